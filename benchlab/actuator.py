@@ -1,0 +1,77 @@
+"""The fabric-shelled pneumatic bending actuator, as designed (paper, section II-A, Eqs 1, 6 and 7)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from benchlab.errors import UsageError
+
+
+@dataclass(frozen=True)
+class ShellDesign:
+    """A tube of TPU film with a windowed fabric laminated on, closed by a strain-limiting strip. Lengths in mm.
+
+    strip_width_mm: slw, around the circumference. window_width_mm: tw, along the axis. rib_width_mm: fw, along the
+    axis, between windows. perimeter_mm: slw + wl (the paper calls 40 mm the diameter; Eq 1 makes it the perimeter).
+    length_mm: al.
+
+    >>> design = ShellDesign(strip_width_mm=10, window_width_mm=3)
+    >>> round(design.diameter_mm, 2), design.window_length_mm, round(design.window_count, 1)
+    (12.73, 30.0, 35.6)
+    """
+
+    strip_width_mm: float
+    window_width_mm: float
+    rib_width_mm: float = 2.0
+    perimeter_mm: float = 40.0
+    length_mm: float = 180.0
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if not (math.isfinite(value) and value > 0):
+                raise UsageError(f"{name} is {value}", hint="give a positive length in mm")
+        if self.strip_width_mm >= self.perimeter_mm:
+            raise UsageError(
+                f"strip_width_mm {self.strip_width_mm} leaves no window in a perimeter of {self.perimeter_mm} mm",
+                hint="make the strip narrower",
+            )
+        if self.window_width_mm + 2 * self.rib_width_mm > self.length_mm:
+            raise UsageError(
+                f"a window of {self.window_width_mm} mm and its ribs do not fit in {self.length_mm} mm",
+                hint="make the window narrower",
+            )
+
+    @property
+    def name(self) -> str:
+        """`tw3_slw10`: how files of this design are called."""
+        return f"tw{self.window_width_mm:g}_slw{self.strip_width_mm:g}"
+
+    @property
+    def window_length_mm(self) -> float:
+        """wl = perimeter − slw."""
+        return self.perimeter_mm - self.strip_width_mm
+
+    @property
+    def diameter_mm(self) -> float:
+        """Diameter of the round tube (Eq 1)."""
+        return self.perimeter_mm / math.pi
+
+    @property
+    def window_count(self) -> float:
+        """n of Eq 7, a real number; `whole_windows` can be cut."""
+        return (self.length_mm - self.rib_width_mm) / (self.window_width_mm + self.rib_width_mm)
+
+    @property
+    def whole_windows(self) -> int:
+        return math.floor(self.window_count + 1e-9)
+
+    @property
+    def end_margin_mm(self) -> float:
+        """Length left over at each end when only whole windows are cut, half of it at either end."""
+        return (self.window_count - self.whole_windows) * (self.window_width_mm + self.rib_width_mm) / 2
+
+    @property
+    def tpu_area_mm2(self) -> float:
+        """TPU area wl·tw·n (Eq 6, with the real n of Eq 7)."""
+        return self.window_length_mm * self.window_width_mm * self.window_count

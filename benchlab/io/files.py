@@ -1,0 +1,72 @@
+"""Files on disk: checked before they are opened, written whole or not at all."""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import os
+import stat
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from benchlab.errors import InputError, UsageError
+
+
+def check_regular_file(path: Path) -> os.stat_result:
+    """The file's stat, if it is one that may be opened; nothing is opened here, so a FIFO or a device cannot hang us.
+
+    Raises UsageError for a missing path or a folder, InputError for a device, a pipe, no permission or no bytes.
+    """
+    try:
+        found = path.stat()
+    except (FileNotFoundError, NotADirectoryError):
+        raise UsageError("no such file", file=path, hint="check the path; addresses and streams are not read") from None
+    except OSError as error:
+        raise InputError(os.strerror(error.errno or errno.EIO).lower(), file=path) from error
+    if stat.S_ISDIR(found.st_mode):
+        raise UsageError("is a folder", file=path, hint="give the file itself")
+    if not stat.S_ISREG(found.st_mode):
+        raise InputError("not a regular file", file=path, hint="copy the recording to disk first")
+    if found.st_size == 0:
+        raise InputError("empty file (0 bytes)", file=path, hint="was the copy finished?")
+    if not os.access(path, os.R_OK):
+        raise InputError("permission denied", file=path, hint="ask its owner for read permission")
+    return found
+
+
+def sha256(path: Path) -> str:
+    """Hexadecimal SHA-256 of a file's bytes."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+@contextmanager
+def written_whole(path: Path) -> Iterator[Path]:
+    """A temporary name beside `path` to write to; on success it is flushed to disk and takes the place of `path`.
+
+    If the block raises, nothing at `path` has changed and the temporary file is gone.
+    Raises InputError where the disk refuses (full, read-only), with the reason.
+    """
+    try:
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem[:40]}-", suffix=path.suffix)
+        os.close(handle)
+    except OSError as error:
+        raise InputError(f"cannot write here: {os.strerror(error.errno or errno.EIO).lower()}", file=path) from error
+    temporary = Path(name)
+    try:
+        yield temporary
+        with temporary.open("rb+") as file:
+            os.fsync(file.fileno())
+        umask = os.umask(0)
+        os.umask(umask)
+        temporary.chmod(0o666 & ~umask)
+        temporary.replace(path)
+    except OSError as error:
+        hint = "free some space; the old result is unchanged" if error.errno == errno.ENOSPC else None
+        reason = os.strerror(error.errno).lower() if error.errno else str(error)
+        raise InputError(f"could not be written: {reason}", file=path, hint=hint) from error
+    finally:
+        with suppress(OSError):
+            temporary.unlink()

@@ -1,0 +1,1 @@
+"""Figures and overlays: what people look at."""
