@@ -56,7 +56,7 @@ def known_unit(text: str) -> tuple[str, str] | None:
     return None
 
 
-def to_MPa(value: ArrayLike, unit: str) -> FloatArray:  # noqa: N802 the symbol of the unit
+def to_MPa(value: ArrayLike, unit: str) -> FloatArray:
     """Pressure in MPa, same shape as `value`. InputError for a unit that is not a pressure.
 
     >>> float(to_MPa(350.0, "kPa"))
