@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from benchlab.vision.picture import FloatArray, UInt8Array
 from benchlab.vision.synthetic.coverage import ellipse_coverage
@@ -19,7 +18,6 @@ from benchlab.vision.synthetic.scene import RGB, Scene
 from benchlab.vision.synthetic.things import thing_colour, thing_outlines
 
 Rect = tuple[int, int, int, int]
-Picture = NDArray[np.uint8 | np.float32]
 
 
 @dataclass(frozen=True)
@@ -46,14 +44,14 @@ def light_field(scene: Scene) -> Float32Array:
 
 
 def backdrop(scene: Scene) -> UInt8Array:
-    """(height, width, 3) the bench and the clamp, in full light."""
+    """(height, width, 3) the bench and the clamp, sharp and in full light."""
     canvas = np.empty((scene.height, scene.width, 3), dtype=np.uint8)
     canvas[:] = np.rint(scene.background_rgb)
     if scene.clamp:
         whole, wide = (0, 0, scene.width, scene.height), scene.body_width_px
         _fill(canvas, ribbon(scene, 0.0, (-3.2 * wide, -0.6 * wide), 2.6 * wide), whole, (58.0, 60.0, 64.0))
         _fill(canvas, ribbon(scene, 0.0, (-2.9 * wide, -0.9 * wide), 2.2 * wide), whole, (74.0, 76.0, 80.0))
-    return _blurred(canvas, scene.blur_px).astype(np.uint8)
+    return canvas
 
 
 def body_outline(scene: Scene, angle_rad: float, relative_width: float) -> FloatArray:
@@ -76,21 +74,20 @@ def exposure_angles(scene: Scene, angle_rad: float, previous_rad: float) -> Floa
     return angle_rad + sweep * ((np.arange(parts) + 0.5) / parts - 0.5)
 
 
-def flat_layers(scene: Scene, canvas: UInt8Array, rect: Rect, angles_rad: FloatArray, frame: int) -> Picture:
+def flat_layers(scene: Scene, canvas: UInt8Array, rect: Rect, angles_rad: FloatArray, frame: int) -> Float32Array:
     """Clutter and the body, averaged over its positions `angles_rad` (S,), on the canvas; then defocus."""
     for thing in scene.clutter:
         for outline in thing_outlines(thing, frame):
             _fill(canvas, outline, rect, thing_colour(thing))
-    if len(angles_rad) == 1:
-        _add_body(scene, canvas, rect, float(angles_rad[0]))
-        return _blurred(canvas, scene.blur_px)
-    parts = (np.arange(BODY_POSITIONS) + 0.5) / BODY_POSITIONS
-    mean = np.zeros(canvas.shape, dtype=np.float32)
-    for angle in np.quantile(angles_rad, parts):
+    moving = len(angles_rad) > 1
+    shares = (np.arange(BODY_POSITIONS) + 0.5) / BODY_POSITIONS
+    positions = np.quantile(angles_rad, shares) if moving else angles_rad
+    total = np.zeros(canvas.shape, dtype=np.float32)
+    for angle in positions:
         copy = canvas.copy()
         _add_body(scene, copy, rect, float(angle))
-        cv2.accumulate(copy, mean)
-    return _blurred(mean / np.float32(BODY_POSITIONS), scene.blur_px)
+        cv2.accumulate(copy, total)
+    return blurred(total / np.float32(len(positions)), scene.blur_px)
 
 
 def add_markers(scene: Scene, part: Part, angles_rad: FloatArray) -> None:
@@ -110,7 +107,7 @@ def add_occluders(scene: Scene, part: Part, frame: int) -> None:
         mask = np.zeros(part.light.shape, dtype=np.uint8)
         for outline in thing_outlines(thing, frame):
             _fill(mask, outline, part.rect, (255.0,))
-        opacity = _blurred(mask, scene.blur_px).astype(np.float32) / np.float32(255)
+        opacity = blurred(mask.astype(np.float32) / np.float32(255), scene.blur_px)
         _blend(part.rgb, part.light, opacity, thing_colour(thing))
 
 
@@ -120,8 +117,9 @@ def _fill(canvas: UInt8Array, outline: FloatArray, rect: Rect, colour: tuple[flo
     cv2.fillPoly(canvas, [corners], colour, cv2.LINE_AA, SHIFT)
 
 
-def _blurred(canvas: Picture, sd_px: float) -> Picture:
-    return np.asarray(cv2.GaussianBlur(canvas, (0, 0), sd_px)) if sd_px else canvas
+def blurred(canvas: Float32Array, sd_px: float) -> Float32Array:
+    """(h, w) or (h, w, 3), out of focus by a Gaussian of this standard deviation."""
+    return np.asarray(cv2.GaussianBlur(canvas, (0, 0), sd_px), dtype=np.float32) if sd_px else canvas
 
 
 def _blend(rgb: Float32Array, light: Float32Array, opacity: Float32Array, colour: RGB) -> None:
@@ -152,7 +150,7 @@ def _add_discs(
         whole = np.zeros((high - low)[::-1], dtype=np.float32)
         for window, (x, y) in zip(windows[:, k], corners[:, k] - low, strict=True):
             whole[y : y + n, x : x + n] += window
-        opacity = np.asarray(_blurred(whole, scene.blur_px), dtype=np.float32) * np.float32(colour[3] / moments)
+        opacity = blurred(whole, scene.blur_px) * np.float32(colour[3] / moments)
         (left, top), (right, bottom) = np.maximum(low, part.rect[:2]), np.minimum(high, part.rect[2:])
         if left < right and top < bottom:
             inside = np.s_[top - part.rect[1] : bottom - part.rect[1], left - part.rect[0] : right - part.rect[0]]

@@ -15,6 +15,7 @@ from benchlab.vision.synthetic.layers import (
     add_markers,
     add_occluders,
     backdrop,
+    blurred,
     body_outline,
     exposure_angles,
     flat_layers,
@@ -57,7 +58,8 @@ class _Painter:
         self._matrix = ycc_matrix(scene.matrix, scene.full_range)
         self._backdrop = backdrop(scene)
         self._light = light_field(scene)
-        self._still = self._channels(np.multiply(self._backdrop, self._light[..., None], dtype=np.float32))
+        bench = blurred(self._backdrop.astype(np.float32), scene.blur_px)
+        self._still = self._channels(bench * self._light[..., None])
         self._noise = NoisePool(scene, rng, noise_fields) if scene.noise_sd else None
 
     def paint(self, angle_rad: float, previous_rad: float, frame: int) -> Planes:
@@ -68,7 +70,7 @@ class _Painter:
         inside = np.s_[rect[1] : rect[3], rect[0] : rect[2]]
         flat = flat_layers(scene, self._backdrop[inside].copy(), rect, angles, frame)
         light = self._light[inside]
-        part = Part(rect, np.multiply(flat, light[..., None], dtype=np.float32), light)
+        part = Part(rect, flat * light[..., None], light)
         add_markers(scene, part, angles)
         add_occluders(scene, part, frame)
         return self._planes(rect, self._channels(part.rgb))
