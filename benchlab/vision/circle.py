@@ -1,4 +1,4 @@
-"""Circles through the markers, one for every frame: signed curvature that is 0 on a line, its uncertainty and the residuals.
+"""Circles through the markers, one for every frame: signed curvature that is 0 on a line, its uncertainty, residuals.
 
 The sign is that of the walk along the points in their order: positive when the body turns from +x towards +y, which is
 clockwise as seen in a picture with y down.
@@ -40,14 +40,15 @@ class CircleFits:
     curvature_sd_per_noise: (T,) its standard deviation when every coordinate has independent noise of sd 1 px, to first
         order (from the derivatives of the orthogonal distances at the solution); multiply by the noise in px. Per px².
     centre: (T, 2) px, radius: (T,) px; NaN on a line, that is where the radius exceeds 1e9 spans.
-    residuals: (T, N) signed orthogonal distances in px, positive to the left of the walk as seen in a picture with y down,
-        which is away from the centre of a positive curvature; NaN for unused points.
+    residuals: (T, N) signed orthogonal distances in px, positive to the left of the walk as seen in a picture with y
+        down, which is away from the centre of a positive curvature; NaN for unused points.
     rms: (T,) px, root mean square of the residuals.
     dof: (T,) used points less the three parameters, at least 0.
     arc_span: (T,) px along the curve from the first to the last used point; steps between neighbours (below 180°) are
         added up, so that it may pass a full turn.
     arc_positions: (T, N) px along the curve from the first used point; NaN for unused points.
-    leverage: (T, N) share of a point's own noise that the fit follows: the variance of a residual is noise²·(1 − leverage).
+    leverage: (T, N) share of a point's own noise that the fit follows; a residual has the variance
+        noise²·(1 − leverage).
     """
 
     curvature: FloatArray
@@ -67,8 +68,8 @@ def fit_circles(points: FloatArray, used: BoolArray | None = None, method: str =
 
     points: (T, N, 2) px, in order along the body; a point that is not finite is never used.
     used: (T, N), which points may enter; all by default.
-    method: a name in FITS. Taubin, Pratt, HyperLS and the geometric fit are nearly unbiased and agree within a fraction of
-        their noise; Kåsa bends short arcs too much.
+    method: a name in FITS. Taubin, Pratt, HyperLS and the geometric fit are nearly unbiased and agree within a
+        fraction of their noise; Kåsa bends short arcs too much.
     Raises UsageError for an unknown method or arrays that do not fit together.
 
     >>> quarter = np.deg2rad(np.linspace(0, 90, 7))
@@ -90,17 +91,19 @@ def fit_circles(points: FloatArray, used: BoolArray | None = None, method: str =
     abcd = FITS[method](xy[rows], weights[rows])
     fitted = np.isfinite(abcd).all(axis=1)
     rows, abcd = rows[fitted], abcd[fitted]
-    return _described(abcd, xy[rows], used[rows], mean[rows], scale[rows], rows, count)
+    return _described(
+        abcd=abcd, xy=xy[rows], used=used[rows], mean=mean[rows], scale=scale[rows], rows=rows, count=count
+    )
 
 
 def fit_circles_robustly(
     points: FloatArray, used: BoolArray | None = None, method: str = "taubin", noise: float | FloatArray | None = None
 ) -> tuple[CircleFits, BoolArray]:
-    """As `fit_circles`, but at most one outlying marker a frame is left out; the fits, and (T, N) which points they used.
+    """As `fit_circles`, leaving out at most one outlying marker a frame; the fits, and (T, N) which points they used.
 
     noise: px, sd of one coordinate, one for all or (T,); None takes it from the scatter of the frames around.
-    The criterion is in `circle_outliers`: it asks for five points, for a gain far beyond chance and beyond what the smooth
-    misfit of a body without constant curvature gives.
+    The criterion is in `circle_outliers`: it asks for five points, for a gain far beyond chance and beyond what the
+    smooth misfit of a body without constant curvature gives.
     """
     points, used = _checked(points, used, method)
     fits = fit_circles(points, used, method)
@@ -114,7 +117,15 @@ def fit_circles_robustly(
     known = given >= scatter
     reference, reference_dof = np.where(known, given, scatter), np.where(known, np.inf, scatter_dof)
     best, rest = _best_left_out(points[rows], used[rows], method)
-    out = is_outlier(squares[rows], rest, n[rows], fits.arc_span[rows], reference[rows], reference_dof[rows])
+    out = is_outlier(
+        squares[rows],
+        rest,
+        n=n[rows],
+        span=fits.arc_span[rows],
+        noise=given[rows],
+        reference=reference[rows],
+        reference_dof=reference_dof[rows],
+    )
     used[rows[out], best[out]] = False
     again = fit_circles(points[rows[out]], used[rows[out]], method)
     for field in fields(CircleFits):
@@ -139,14 +150,14 @@ def _checked(points: FloatArray, used: BoolArray | None, method: str) -> tuple[F
         raise UsageError(f"no circle fit is called {method!r}", hint=f"choose one of {', '.join(FITS)}")
     if points.ndim != 3 or points.shape[2] != 2:
         raise UsageError(f"points have the shape {points.shape}, not (frames, points, 2)")
-    finite = np.isfinite(points).all(axis=2)
+    finite = np.isfinite(points[..., 0]) & np.isfinite(points[..., 1])
     if used is not None and np.shape(used) != finite.shape:
         raise UsageError(f"`used` has the shape {np.shape(used)}, the points need {finite.shape}")
     return points, finite if used is None else finite & np.asarray(used, dtype=bool)
 
 
 def _has_three_places(xy: FloatArray, weights: FloatArray) -> BoolArray:
-    """(T,) whether the points lie at three places at least: the moment matrix of (x²+y²−1, x, y) has rank two or more."""
+    """(T,) whether the points lie at three places at least: the moments of (x²+y²−1, x, y) have rank two or more."""
     columns = np.stack([(xy[..., 0] ** 2 + xy[..., 1] ** 2 - 1) * weights, xy[..., 0], xy[..., 1]], axis=1)
     m = columns @ columns.transpose(0, 2, 1)
     trace = np.trace(m, axis1=1, axis2=2)
@@ -155,6 +166,7 @@ def _has_three_places(xy: FloatArray, weights: FloatArray) -> BoolArray:
 
 
 def _described(
+    *,
     abcd: FloatArray,
     xy: FloatArray,
     used: BoolArray,
@@ -163,13 +175,13 @@ def _described(
     rows: NDArray[np.int64],
     count: NDArray[np.int64],
 ) -> CircleFits:
-    """Turn curves of centred and scaled points into px, for the frames `rows` of all that `count` counts the points of."""
+    """Turn curves of centred and scaled points into px. They belong to the frames `rows`; `count` (T,) is for all."""
     at = feet(abcd, xy)
     positions = _arc_positions(xy - at.distance[..., None] * at.normal, at.normal, used)
-    sign = np.where(positions[:, -1] < 0, -1.0, 1.0)
+    sign = np.where(positions[:, -1:].sum(axis=1) < 0, -1.0, 1.0)
     positions = positions * (sign * scale)[:, None]
     a = sign * abcd[:, 0]
-    span = positions[:, -1]
+    span = positions[:, -1:].sum(axis=1)
     curvature = 2 * a / scale
     bent = np.abs(curvature) * span * LARGEST_RADIUS_IN_SPANS > 1
     divisor = np.where(bent, 2 * abcd[:, 0], np.nan)
@@ -193,10 +205,10 @@ def _described(
 
 
 def _arc_positions(foot: FloatArray, normal: FloatArray, used: BoolArray) -> FloatArray:
-    """(T, N) signed arc length from the first used foot, along the tangent that is the normal turned from +x towards +y."""
+    """(T, N) signed arc length from the first used foot, along the normal turned a quarter from +x towards +y."""
     index = np.where(used, np.arange(used.shape[1]), -1)
     index = np.maximum.accumulate(index, axis=1)
-    index = np.where(index < 0, np.argmax(used, axis=1)[:, None], index)[..., None]
+    index = np.where(index < 0, (np.cumsum(used, axis=1) == 0).sum(axis=1)[:, None], index)[..., None]
     foot, normal = np.take_along_axis(foot, index, axis=1), np.take_along_axis(normal, index, axis=1)
     before, after = normal[:, :-1], normal[:, 1:]
     cross = before[..., 0] * after[..., 1] - before[..., 1] * after[..., 0]
@@ -205,7 +217,9 @@ def _arc_positions(foot: FloatArray, normal: FloatArray, used: BoolArray) -> Flo
     both = before + after
     forwards = np.sign(chord[..., 1] * both[..., 0] - chord[..., 0] * both[..., 1])
     steps = forwards * np.hypot(chord[..., 0], chord[..., 1]) / np.sinc(turn / (2 * np.pi))
-    return np.concatenate([np.zeros((len(foot), 1)), np.cumsum(steps, axis=1)], axis=1)
+    positions = np.zeros(used.shape)
+    positions[:, 1:] = np.cumsum(steps, axis=1)
+    return positions
 
 
 def _design(abcd: FloatArray, xy: FloatArray, used: BoolArray) -> FloatArray:

@@ -1,8 +1,9 @@
-"""Algebraic circle fits, batched over frames: the circle A(x²+y²) + Bx + Cy + D = 0 as the null direction of a moment matrix.
+"""Algebraic circle fits, batched over frames: A(x²+y²) + Bx + Cy + D = 0 as the null direction of a moment matrix.
 
-All work in the frame of `circle.fit_circles`: points centred on their mean and scaled so that the mean of x²+y² is 1. They
-differ in the quantity that is held constant while the algebraic residual is made small (Al-Sharadqah & Chernov 2009,
-"Error analysis for circle fitting algorithms", Electronic Journal of Statistics 3, 886–911, doi:10.1214/09-EJS419).
+All work in the frame of `circle.fit_circles`: points centred on their mean and scaled so that the mean of x²+y² is
+1. They differ in the quantity that is held constant while the algebraic residual is made small (Al-Sharadqah &
+Chernov 2009, "Error analysis for circle fitting algorithms", Electronic Journal of Statistics 3,
+886–911, doi:10.1214/09-EJS419).
 
 xy is (T, N, 2), zero where unused; weights is (T, N), 1 for used points and 0 for others. Each fit returns (T, 4) rows
 (A, B, C, D) with B² + C² − 4AD = 1, so that 2A is the curvature and A = 0 is an ordinary line; NaN where there is none.
@@ -20,9 +21,9 @@ ROUNDING = 1e-13
 def kasa(xy: FloatArray, weights: FloatArray) -> FloatArray:
     """Kåsa (1976, IEEE Trans. Instrum. Meas. 25, 8–14): A = 1, linear least squares.
 
-    Short arcs come out too strongly curved, the more so the noisier. On a line the linear system is singular; here it is
-    written in the principal axes of the points and multiplied by the variance across them, so that it tends to the line,
-    and points on a line to rounding give the line itself (curvature 0).
+    Short arcs come out too strongly curved, the more so the noisier. On a line the linear system is singular; here
+    it is written in the principal axes of the points and multiplied by the variance across them, so that it tends to
+    the line, and points on a line to rounding give the line itself (curvature 0).
     """
     xx, yy, cross = (_mean(xy[..., i] * xy[..., j], weights) for i, j in ((0, 0), (1, 1), (0, 1)))
     angle = 0.5 * np.arctan2(2 * cross, xx - yy)
@@ -58,14 +59,14 @@ def pratt(xy: FloatArray, weights: FloatArray) -> FloatArray:
 
 
 def hyper(xy: FloatArray, weights: FloatArray) -> FloatArray:
-    """HyperLS (Al-Sharadqah & Chernov 2009): the constraint that cancels the essential bias, 8A² + B² + C² + 4AD here."""
+    """HyperLS (Al-Sharadqah & Chernov 2009): 8A² + B² + C² + 4AD, which cancels the essential bias."""
     inverse = np.array([[0, 0, 0, 0.5], [0, 1, 0, 0], [0, 0, 1, 0], [0.5, 0, 0, -2]])
     return _smallest_non_negative(inverse, xy, weights)
 
 
 def _smallest_non_negative(inverse: FloatArray, xy: FloatArray, weights: FloatArray) -> FloatArray:
-    """Solve M a = η N a, N given by its inverse. N has one negative eigenvalue and M none, so that one η is negative, and
-    the wanted one is the second from below, also where rounding puts it a little under 0."""
+    """Solve M a = η N a, N given by its inverse. N has one negative eigenvalue and M none, so that one η is negative
+    and the wanted one is the second from below, also where rounding puts it a little under 0."""
     z = xy[..., 0] ** 2 + xy[..., 1] ** 2
     columns = np.stack([z, xy[..., 0], xy[..., 1], weights], axis=1)
     moments = columns @ columns.transpose(0, 2, 1) / weights.sum(axis=1)[:, None, None]

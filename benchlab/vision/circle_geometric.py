@@ -1,8 +1,8 @@
 """Orthogonal distances from a circle or line, their derivatives, and the fit that makes their squares least.
 
-A curve is (A, B, C, D) with A(x²+y²) + Bx + Cy + D = 0 and B² + C² − 4AD = 1. With P the left side at a point, its signed
-distance is d = 2P/(1 + √(1+4AP)), which holds for circles and lines alike (Chernov & Lesort 2005, J. Math. Imaging and
-Vision 23, 239–252; Gander, Golub & Strebel 1994, BIT 34, 558–578, pose the problem).
+A curve is (A, B, C, D) with A(x²+y²) + Bx + Cy + D = 0 and B² + C² − 4AD = 1. With P the left side at a point, its
+signed distance is d = 2P/(1 + √(1+4AP)), which holds for circles and lines alike (Chernov & Lesort 2005, J. Math.
+Imaging and Vision 23, 239–252; Gander, Golub & Strebel 1994, BIT 34, 558–578, pose the problem).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ LEAST_DAMPING = 1e-14  # of the trace: keeps the equations solvable where two po
 
 @dataclass(frozen=True)
 class Feet:
-    """distance (T, N); normal (T, N, 2), the direction of growing distance; stretch (T, N): distance from the centre over radius."""
+    """distance (T, N); normal (T, N, 2), the way it grows; stretch (T, N): distance from the centre over radius."""
 
     distance: FloatArray
     normal: FloatArray
@@ -43,16 +43,16 @@ def feet(abcd: FloatArray, xy: FloatArray) -> Feet:
 def middle(weights: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
     """(T,) index of the used point halfway along."""
     count = np.cumsum(weights, axis=1)
-    return np.argmax(2 * count >= count[:, -1:], axis=1)
+    return (2 * count < count[:, -1:]).sum(axis=1)
 
 
 def jacobian(
     curvature: FloatArray, base: FloatArray, normal: FloatArray, xy: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Signed distances (T, N) and their derivatives (T, N, 3) to half the curvature, to a shift along −normal, and to a turn.
+    """Signed distances (T, N) and their derivatives (T, N, 3) to half the curvature, a shift along −normal, a turn.
 
-    The curve passes through `base` (T, 2) with unit normal `normal` (T, 2) there and has the signed curvature (T,): three
-    numbers that stay regular on lines and on full circles.
+    The curve passes through `base` (T, 2) with unit normal `normal` (T, 2) there and has the signed curvature (T,):
+    three numbers that stay regular on lines and on full circles.
     """
     a = curvature[:, None] / 2
     step = xy - base[:, None, :]
