@@ -152,10 +152,24 @@ class Film(Recording):
         if duration is None and container.duration:
             duration = container.duration / 1e6
         info = RecordingInfo(
-            self._path, "video", width, height, picture.width, picture.height, stream.codec_context.name,
-            picture.format.name, stream.frames or None, None if duration is None else duration * self._scale, rotation, aspect,
-            tags.full_range, tags.matrix, float(self._first_stamp * time_base), mirrored, rate,
-        )  # fmt: skip
+            path=self._path,
+            kind="video",
+            width=width,
+            height=height,
+            stored_width=picture.width,
+            stored_height=picture.height,
+            codec=stream.codec_context.name,
+            pixel_format=picture.format.name,
+            frame_count=stream.frames or None,
+            duration_s=None if duration is None else duration * self._scale,
+            rotation_deg=rotation,
+            sample_aspect=aspect,
+            full_range=tags.full_range,
+            matrix=tags.matrix,
+            start_s=float(self._first_stamp * time_base),
+            mirrored=mirrored,
+            fps=rate,
+        )
         return info, PlaneReader(tags)
 
     def _slow_motion(self, rate: float | None) -> float:

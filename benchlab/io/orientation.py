@@ -1,4 +1,4 @@
-"""The tag that says how a stored picture is to be turned: display matrix of a film, EXIF orientation of a still."""
+"""The display matrix: how the stored pictures of a film are to be turned."""
 
 from __future__ import annotations
 
@@ -35,7 +35,10 @@ def frame_orientation(frame: VideoFrame, file: Path) -> tuple[int, bool]:
 
     Raises InputError for a turn that is no multiple of 90 degrees.
     """
-    tag = frame.side_data.get("DISPLAYMATRIX")
+    try:
+        tag = frame.side_data.get("DISPLAYMATRIX")
+    except ValueError:  # PyAV refuses the whole list for one entry of a kind it has no name for
+        return -frame.rotation % 360, False
     if not isinstance(tag, SideData):
         return 0, False
     found = orientation(np.frombuffer(bytes(tag), dtype=np.int32)[:9])

@@ -157,7 +157,7 @@ class PlaneReader:
 
 
 def bgr_transform(matrix: str, full_range: bool) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """(3, 4): [B, G, R] = M · [Y, Cb, Cr, 1], all 0–255, for planes of this matrix and range (ITU-R BT.601, 709, 2020)."""
+    """(3, 4): [B, G, R] = M · [Y, Cb, Cr, 1], all 0–255, for planes of this matrix and range (BT.601, 709, 2020)."""
     k_r, k_b = LUMA_WEIGHTS[matrix]
     k_g = 1 - k_r - k_b
     luma, chroma, black = (1.0, 1.0, 0.0) if full_range else (255 / 219, 255 / 224, 16.0)
@@ -189,7 +189,7 @@ def planes_to_bgr(planes: Planes) -> UInt8Array:
 
 
 def display_bgr(planes: Planes, info: RecordingInfo) -> UInt8Array:
-    """(info.height, info.width, 3) picture as displayed, blue, green, red: stretched, mirrored and turned as tagged."""
+    """(info.height, info.width, 3) blue, green, red as displayed: stretched, mirrored and turned as tagged."""
     picture = planes_to_bgr(planes)
     if info.sample_aspect != 1:
         wide = info.width if info.rotation_deg in {0, 180} else info.height

@@ -40,10 +40,10 @@ def open_recording(
     """
     path = Path(path)
     if path.is_dir():
-        return Stills(path, fps=fps, allow_partial=allow_partial, max_pixels=max_pixels)
+        return Stills(path, fps=fps, max_pixels=max_pixels)
     check_regular_file(path)
     if picture_codec(read_head(path)) and path.suffix.lower() not in RAW_SUFFIXES:
-        return Stills(path, fps=fps, allow_partial=allow_partial, max_pixels=max_pixels)
+        return Stills(path, fps=fps, max_pixels=max_pixels)
     return Film(
         path,
         stream=stream,

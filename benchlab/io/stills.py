@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 
@@ -18,8 +19,7 @@ from benchlab.errors import InputError, UsageError
 from benchlab.io.container import picture_codec, read_head
 from benchlab.io.files import check_regular_file
 from benchlab.io.film_checks import check_rates, check_size
-from benchlab.io.orientation import frame_orientation
-from benchlab.io.picture_header import picture_size
+from benchlab.io.picture_header import picture_orientation, picture_size
 from benchlab.io.planes import PlaneReader, read_tags
 from benchlab.io.recording_base import Recording, RecordingInfo, displayed_size
 from benchlab.vision.picture import Frame
@@ -50,8 +50,18 @@ def list_stills(folder: Path) -> tuple[list[Path], int]:
     return sorted(pictures, key=lambda f: natural_key(f.name)), len(files) - len(pictures)
 
 
-def read_still(path: Path, max_pixels: int) -> tuple[VideoFrame, str]:
-    """One decoded picture and the name of its codec.
+@dataclass(frozen=True)
+class Still:
+    """One decoded picture, its codec, and how it is to be turned: clockwise, mirrored before."""
+
+    frame: VideoFrame
+    codec: str
+    rotation_deg: int
+    mirrored: bool
+
+
+def read_still(path: Path, max_pixels: int) -> Still:
+    """One picture, decoded.
 
     Raises InputError for a file that is no JPEG, PNG or TIFF, or is damaged, or has more pixels than the limit.
     """
@@ -76,15 +86,13 @@ def read_still(path: Path, max_pixels: int) -> tuple[VideoFrame, str]:
         raise InputError("damaged picture", file=path, hint="copy it again from the camera") from error
     if not frames or frames[0].is_corrupt:
         raise InputError("damaged picture", file=path, hint="copy it again from the camera")
-    return frames[0], codec
+    return Still(frames[0], codec, *picture_orientation(data))
 
 
 class Stills(Recording):
     """Stills in order as a Recording. Times are i/fps where a rate is given, else NaN."""
 
-    def __init__(
-        self, path: Path, *, fps: float | None = None, allow_partial: bool = False, max_pixels: int = 64_000_000
-    ) -> None:
+    def __init__(self, path: Path, *, fps: float | None = None, max_pixels: int = 64_000_000) -> None:
         check_rates(fps, None)
         self._fps, self._max_pixels = fps, max_pixels
         self.warnings = []
@@ -94,7 +102,6 @@ class Stills(Recording):
                 self.warn(f"{others} other files in the folder are ignored")
         else:
             self._files = [path]
-        self._allow_partial = allow_partial
         self._path = path
         self.info = self._describe()
 
@@ -105,34 +112,49 @@ class Stills(Recording):
         refused: InputError | None = None
         for file in self._files:
             try:
-                frame, codec = read_still(file, self._max_pixels)
+                still = read_still(file, self._max_pixels)
             except (InputError, UsageError) as error:
                 if len(self._files) == 1:
                     raise
                 refused = refused or InputError(error.what, file=file, hint="none of the pictures can be read")
                 continue
-            tags = read_tags(frame, "center", file, still=True)
-            rotation, mirrored = frame_orientation(frame, file)
-            width, height = displayed_size(frame.width, frame.height, Fraction(1), rotation)
-            count = len(self._files)
-            return RecordingInfo(
-                self._path, "stills", width, height, frame.width, frame.height, codec, frame.format.name, count,
-                count / self._fps if self._fps else None, rotation, Fraction(1), tags.full_range, tags.matrix,
-                mirrored=mirrored,
-            )  # fmt: skip
+            return self._facts(still, file)
         raise refused or InputError("no readable picture", file=self._path)
+
+    def _facts(self, still: Still, file: Path) -> RecordingInfo:
+        frame, count = still.frame, len(self._files)
+        tags = read_tags(frame, "center", file, still=True)
+        width, height = displayed_size(frame.width, frame.height, Fraction(1), still.rotation_deg)
+        return RecordingInfo(
+            path=self._path,
+            kind="stills",
+            width=width,
+            height=height,
+            stored_width=frame.width,
+            stored_height=frame.height,
+            codec=still.codec,
+            pixel_format=frame.format.name,
+            frame_count=count,
+            duration_s=count / self._fps if self._fps else None,
+            rotation_deg=still.rotation_deg,
+            full_range=tags.full_range,
+            matrix=tags.matrix,
+            mirrored=still.mirrored,
+            fps=self._fps,
+        )
 
     def __iter__(self) -> Iterator[Frame]:
         unreadable = 0
         for index, file in enumerate(self._files):
             time_s = index / self._fps if self._fps else math.nan
             try:
-                frame, _ = read_still(file, self._max_pixels)
+                still = read_still(file, self._max_pixels)
             except (InputError, UsageError) as error:
                 unreadable += 1
                 yield Frame(index, time_s, None, error.what, file.name)
                 continue
-            self._check_alike(frame, file)
+            self._check_alike(still, file)
+            frame = still.frame
             if any(component.bits > 8 for component in frame.format.components):
                 self.warn("16-bit pictures are read as 8-bit")
             planes = PlaneReader(read_tags(frame, "center", file, still=True))(frame)
@@ -140,13 +162,13 @@ class Stills(Recording):
         if unreadable:
             self.warn(f"{unreadable} of {len(self._files)} pictures could not be read")
 
-    def _check_alike(self, frame: VideoFrame, file: Path) -> None:
-        info = self.info
+    def _check_alike(self, still: Still, file: Path) -> None:
+        info, frame = self.info, still.frame
         if (frame.width, frame.height) != (info.stored_width, info.stored_height):
             raise InputError(
                 f"is {frame.width}×{frame.height}, the first picture {info.stored_width}×{info.stored_height}",
                 file=file,
                 hint="all pictures of a folder must have one size",
             )
-        if frame_orientation(frame, file) != (info.rotation_deg, info.mirrored):
+        if (still.rotation_deg, still.mirrored) != (info.rotation_deg, info.mirrored):
             raise InputError("is turned differently from the first picture", file=file, hint="turn them alike")
