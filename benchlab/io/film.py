@@ -15,14 +15,12 @@ from benchlab.errors import InputError, UsageError
 from benchlab.io.container import missing_bytes, read_head
 from benchlab.io.decoder import RAW_FORMATS, Decoder, chroma_location, open_container, translated
 from benchlab.io.files import check_regular_file
-from benchlab.io.film_checks import Account, check_rates, check_size
+from benchlab.io.film_checks import DAMAGED, NOT_ADVANCING, Account, check_rates, check_size
 from benchlab.io.orientation import frame_orientation
 from benchlab.io.planes import PlaneReader, read_tags
 from benchlab.io.recording_base import Recording, RecordingInfo, displayed_size
 from benchlab.vision.picture import Frame
 
-NOT_ADVANCING = "time stamp does not advance"
-DAMAGED = "damaged"
 _Start = tuple[list[tuple[int | None, None]], tuple[int | None, VideoFrame]]
 
 
@@ -67,7 +65,7 @@ class Film(Recording):
             self.close()
             self._frames = self._open()
         self._started = True
-        account = Account(self.info, self._allow_partial, self._fps is not None)
+        account = Account(self.info, self._allow_partial, tick_s=0.0 if self._fps else float(self._time_base))
         width, height = self.info.stored_width, self.info.stored_height
         clock, reader = self._clock(), self._reader
         with translated(self._path, "while reading"):
@@ -80,10 +78,8 @@ class Film(Recording):
                     continue
                 if picture.width != width or picture.height != height:
                     self._refuse_size(picture, index)
-                if not account.good(time_s, picture):
-                    yield Frame(index, time_s, None, NOT_ADVANCING)
-                    continue
-                yield Frame(index, time_s, reader(picture))
+                reason = account.good(time_s, picture)
+                yield Frame(index, time_s, None if reason == NOT_ADVANCING else reader(picture), reason)
         self._finish(account)
 
     def _open(self) -> Decoder:

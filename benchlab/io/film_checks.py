@@ -12,6 +12,10 @@ from benchlab.errors import InputError, UsageError
 from benchlab.io.recording_base import RecordingInfo
 
 MAX_FPS = 1e6
+MAX_TICK_S = 0.01
+DAMAGED = "damaged"
+AFTER_DAMAGE = "predicted from a damaged frame"
+NOT_ADVANCING = "time stamp does not advance"
 
 
 def check_rates(fps: float | None, capture_fps: float | None) -> None:
@@ -36,8 +40,9 @@ def check_size(path: Path, width: int, height: int, max_pixels: int) -> None:
 class Account:
     """Counts frames, damage and time steps while a film is read, in constant memory."""
 
-    def __init__(self, info: RecordingInfo, allow_partial: bool, even: bool) -> None:
-        self.info, self.allow_partial, self.even = info, allow_partial, even
+    def __init__(self, info: RecordingInfo, allow_partial: bool, tick_s: float) -> None:
+        self.info, self.allow_partial = info, allow_partial
+        self.jitter_s = min(tick_s, MAX_TICK_S) + 0.0015
         self.frames = self.lost = self.stuck = self.tainted = 0
         self.first_lost_s = self.last_lost_s = self.last_s = self._latest_s = math.nan
         self.shortest_s, self.longest_s = math.inf, 0.0
@@ -55,8 +60,11 @@ class Account:
         self._taint = True
         self._step_known = False
 
-    def good(self, time_s: float, picture: VideoFrame) -> bool:
-        """A decoded frame; False if its time does not advance."""
+    def good(self, time_s: float, picture: VideoFrame) -> str:
+        """A decoded frame; returns what is doubtful about it, mostly nothing.
+
+        Every frame from a damaged one to the next key frame counts as predicted from it.
+        """
         self.frames += 1
         self.interlaced = self.interlaced or picture.interlaced_frame
         if self._taint:
@@ -66,14 +74,14 @@ class Account:
         if time_s <= last:
             self.stuck += 1
             self._step_known = False
-            return False
+            return NOT_ADVANCING
         if self._step_known:
             step = time_s - last
             self.shortest_s = min(step, self.shortest_s)
             self.longest_s = max(step, self.longest_s)
         self._latest_s = time_s
         self._step_known = True
-        return True
+        return AFTER_DAMAGE if self._taint else ""
 
     @property
     def decoded(self) -> int:
@@ -86,7 +94,7 @@ class Account:
             warn("interlaced: the two fields of a frame are half a frame apart in time")
         if self.stuck:
             warn(f"{self.stuck} of {self.frames} frames have time stamps that do not advance; they are not measured")
-        if not self.even and self.longest_s > 1.1 * self.shortest_s + 0.0025:
+        if self.longest_s > 1.1 * self.shortest_s + self.jitter_s:
             warn(f"variable frame rate, {1e3 * self.shortest_s:.0f}–{1e3 * self.longest_s:.0f} ms")
         if self.decoded == 0:
             raise InputError("no frames decoded", file=self.info.path, hint="copy it again from the camera")

@@ -45,6 +45,7 @@ UNKNOWN_MATRIX = 2
 COLORSPACE = {"bt601": Colorspace.ITU601, "bt709": Colorspace.ITU709, "bt2020": Colorspace.BT2020}
 LUMA_WEIGHTS = {"bt601": (0.299, 0.114), "bt709": (0.2126, 0.0722), "bt2020": (0.2627, 0.0593)}  # (kR, kB)
 HD_LINES = 720
+COLOUR_COMPONENTS = 3  # fewer are gray, with or without alpha
 EXACT = (
     Interpolation.BILINEAR | Interpolation.ACCURATE_RND | Interpolation.FULL_CHR_H_INP | Interpolation.FULL_CHR_H_INT
 )
@@ -73,7 +74,7 @@ def read_tags(frame: VideoFrame, siting: str, file: Path, *, still: bool = False
     """
     pixel_format = frame.format
     is_rgb = pixel_format.is_rgb or pixel_format.has_palette or pixel_format.is_bayer
-    if not is_rgb and not any(component.is_chroma for component in pixel_format.components):
+    if not is_rgb and len(pixel_format.components) < COLOUR_COMPONENTS:
         raise InputError(
             "the picture has no colour",
             file=file,
