@@ -1,0 +1,56 @@
+"""The README of the sample data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+TEXT = """# Sample data: drawn, not filmed
+
+These 25 clips show no real actuator. They are drawn by benchlab, so that the bending angle in every frame is known
+exactly and what the tracker says can be checked against it. Made, and made again, by
+
+    benchlab sample-data --out sample_data{seed}
+
+## What they follow
+Five designs of the fabric-shelled bending actuator, five samples each. The bending angle of a sample at 0.35 MPa is
+drawn from a normal distribution with the mean and standard deviation that the paper "Design and Modeling of
+Fabric-Shelled Pneumatic Bending Soft Actuators" gives for its five measured samples (Table I). Five draws do not have
+exactly the mean they come from:
+
+| design | published mean ± SD, deg | as drawn, mean ± SD, deg |
+|---|---|---|
+{rows}
+
+tw is the width of the TPU windows along the axis, slw that of the strain-limiting layer around the circumference, both
+in mm.
+
+## What is our choice
+How the angle grows with pressure is not taken from any measurement; only its value at 0.35 MPa is. Pressure rests at 0
+for 0.25 s, rises linearly to 0.35 MPa in 2.5 s (the paper's loading) and is held. The angle follows without delay, as
+x·(1 + {concavity}·(1 − x)) of its final value, x being the share of the final pressure. The body is a perfect circular
+arc, flat in the picture plane, under a camera without distortion. Position, direction, light, focus, colours and
+scale differ from clip to clip. Ten red markers lie evenly along the 180 mm of the actuator, the first and the last at
+its ends.
+
+## Files
+- `videos/<design>_s<sample>.mp4`: 1920×1080, 30 frames/s, 90 frames, H.264, BT.709, limited range, chroma sited left.
+  Title and comment of each file say that it is drawn.
+- `truth.csv`, one row per clip: `design`, `tw_mm`, `slw_mm`, `sample`, `file`, `length_mm` (actuator length al, first
+  marker to last), `scale_mm_per_px`, `pressure_MPa`, and `angle_deg`, the true bending angle at that pressure. Angles
+  are positive whichever way the body bends.
+- `truth_series.csv`, one row per frame: `file`, `time_s`, `pressure_MPa`, `angle_deg`, in the middle of the exposure.
+
+The same seed draws the same pictures; the files are the same bytes only with the same version of the encoder.
+"""
+
+
+def readme(designs: Iterable[tuple[str, float, float, float, float]], concavity: float, seed: int) -> str:
+    """The text beside the clips.
+
+    designs: name, published mean and SD, mean and SD as drawn, in degrees. concavity: c of x·(1 + c·(1 − x)).
+    """
+    rows = "\n".join(
+        f"| {name} | {mean:.1f} ± {sd:.1f} | {got_mean:.1f} ± {got_sd:.1f} |"
+        for name, mean, sd, got_mean, got_sd in designs
+    )
+    return TEXT.format(rows=rows, concavity=concavity, seed="" if seed == 1 else f" --seed {seed}")
