@@ -71,7 +71,7 @@ def refusal(path: Path, head: bytes) -> InputError:
 
 
 def mp4_boxes(path: Path) -> tuple[list[bytes], int]:
-    """Types of the outermost boxes of an ISO base media file, none for others, and how many bytes the last one lacks."""
+    """Types of the outermost boxes of an ISO media file, none for others, and how many bytes the last one lacks."""
     size = path.stat().st_size
     boxes: list[bytes] = []
     position = 0

@@ -11,6 +11,7 @@ import av
 from av.container import InputContainer
 from av.error import FFmpegError
 from av.packet import Packet
+from av.video.codeccontext import VideoCodecContext
 from av.video.frame import VideoFrame
 from av.video.stream import VideoStream
 
@@ -38,17 +39,30 @@ def open_container(path: Path, max_pixels: int) -> InputContainer:
     """
     head = read_head(path)
     check_not_text(path, head)
-    options = {"protocol_whitelist": "file", "format_whitelist": FORMATS}
     try:
-        return av.open(
-            f"file:{path.absolute()}",  # so that neither a dash, a percent sign nor a colon in the name means anything
-            format=RAW_SUFFIXES.get(path.suffix.lower()),
-            options={"max_pixels": str(max_pixels)},
-            container_options=options,
-            metadata_errors="replace",
-        )
+        return _open(path, {"max_pixels": str(max_pixels)})
     except (FFmpegError, ValueError, OSError, IndexError, RuntimeError) as error:
         raise refusal(path, head) from error
+
+
+def claimed_size(path: Path, index: int) -> tuple[int, int]:
+    """(width, height) that the header claims for a stream, read without decoding a picture."""
+    try:
+        with _open(path, {"skip_frame": "all"}) as container:
+            context = container.streams[index].codec_context
+            return (context.width, context.height) if isinstance(context, VideoCodecContext) else (0, 0)
+    except (FFmpegError, ValueError, OSError, IndexError, RuntimeError):
+        return 0, 0
+
+
+def _open(path: Path, options: dict[str, str]) -> InputContainer:
+    return av.open(
+        f"file:{path.absolute()}",  # so that neither a dash, a percent sign nor a colon in the name means anything
+        format=RAW_SUFFIXES.get(path.suffix.lower()),
+        options=options,
+        container_options={"protocol_whitelist": "file", "format_whitelist": FORMATS},
+        metadata_errors="replace",
+    )
 
 
 def chroma_location(container: InputContainer, index: int) -> str:

@@ -13,7 +13,7 @@ from av.video.stream import VideoStream
 
 from benchlab.errors import InputError, UsageError
 from benchlab.io.container import missing_bytes, read_head
-from benchlab.io.decoder import RAW_FORMATS, Decoder, chroma_location, open_container, translated
+from benchlab.io.decoder import RAW_FORMATS, Decoder, chroma_location, claimed_size, open_container, translated
 from benchlab.io.files import check_regular_file
 from benchlab.io.film_checks import DAMAGED, NOT_ADVANCING, Account, check_rates, check_size
 from benchlab.io.orientation import frame_orientation
@@ -21,6 +21,7 @@ from benchlab.io.planes import PlaneReader, read_tags
 from benchlab.io.recording_base import Recording, RecordingInfo, displayed_size
 from benchlab.vision.picture import Frame
 
+REORDERING = frozenset({"h264", "hevc"})  # AVI has stamps of decoding only; for these they are no presentation times
 _Start = tuple[list[tuple[int | None, None]], tuple[int | None, VideoFrame]]
 
 
@@ -87,8 +88,12 @@ class Film(Recording):
         self._container = open_container(self._path, self._max_pixels)
         stream = self._choose(self._container)
         context = stream.codec_context
-        check_size(self._path, context.width, context.height, self._max_pixels)
-        context.thread_type = "AUTO"  # type of PyAV's descriptor: a name is accepted
+        size = (context.width, context.height)
+        if 0 in size:  # FFmpeg forgets the size of a picture beyond its limit
+            size = claimed_size(self._path, stream.index)
+        check_size(self._path, *size, self._max_pixels)
+        # Frame threads conceal damage differently from run to run; slice threads give the same pixels each time.
+        context.thread_type = "SLICE" if self._allow_partial else "AUTO"
         context.options = {"max_pixels": str(self._max_pixels)} | ({"skip_loop_filter": "all"} if self._fast else {})
         self._video = stream
         return Decoder(self._container, stream, self._path)
@@ -129,7 +134,8 @@ class Film(Recording):
         stamp, picture = start
         stream, container = self._video, self._frames.container
         raw = container.format.name in RAW_FORMATS
-        if self._fps is None and (stamp is None or raw):
+        reordered = container.format.name == "avi" and stream.codec_context.has_b_frames
+        if self._fps is None and (stamp is None or raw or (reordered and stream.codec_context.name in REORDERING)):
             raise UsageError("has no time stamps", file=self._path, hint="give its frame rate with --fps")
         if self._fps is not None and stamp is not None and not raw:
             self.warn(f"time from --fps {self._fps:g}; the stamps of the file are not used")

@@ -31,10 +31,12 @@ def open_recording(
     capture_fps: the rate at which a slow-motion film was taken; its time is rescaled by tagged rate / capture rate.
     fast: leave out the decoder's deblocking filter. Faster, and pixels differ slightly (block edges stay visible).
     allow_partial: keep what is whole of a damaged or truncated film; lost frames have no planes, and a warning says so.
+        Slower, without frame threads, so that the same damage gives the same pixels each time.
     max_pixels: limit on width × height, checked before anything is decoded.
 
     Frame times are presentation stamps less the first one. A damaged frame and one whose stamp does not advance have
-    planes None and say why. Without `allow_partial`, iteration ends in InputError if anything was lost.
+    planes None and say why; those after a damaged one, up to the next key frame, have planes and a reason to doubt them.
+    Without `allow_partial`, iteration ends in InputError if anything was lost.
     Raises UsageError for a path that is no file or folder, for a stream that is not there and where `fps` is needed,
     and InputError for whatever is not a whole, coloured, moderately sized recording, with the reason.
     """
