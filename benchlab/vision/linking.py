@@ -19,7 +19,10 @@ from benchlab.vision.picture import FloatArray
 SAMPLED_FRAMES = 32
 SHARE_TO_BELIEVE = 0.2  # of the sampled frames with a chain that must show the largest count
 GATE = 0.4  # of the spacing: how far from its expected place a marker is looked for
-SPACING_CHANGE = 0.25  # logarithm of the ratio of a spacing to its last value
+IN_LINE = 0.15  # of the spacing: how far a marker may lie from the cubic through its neighbours, on a straight body
+MARKER_NOISE = 0.005  # of the spacing
+MIN_ROUNDNESS = 0.3
+RETRY_EVERY = 10  # frames with a marker missing after which the whole row is looked for anew
 SIZE_RANGE = (0.5, 2.0)  # area against the same marker's last area
 AREA_LOSS, AREA_GAIN = 0.06, 0.25  # least deviations from its usual area that tell a covered or a merged marker
 CERTAIN_SCORE = 0.4  # of the reference chain's score: a chain that is believed wherever it lies
@@ -48,10 +51,13 @@ def link(frames: Sequence[NDArray[np.void] | None], count: int | None = None, st
         reasons = tuple("damaged" if c is None else "no markers" for c in frames)
         return Tracks(np.full((len(frames), 0, 2), np.nan), np.full((len(frames), 0), np.nan), reasons)
     start, chain = reference
+    first = frames[start]
+    assert first is not None, "the reference is a frame with candidates"
+    members = first[list(chain.order)]
     chosen = np.full((len(frames), len(chain.order)), -1)
     chosen[start] = chain.order
     for direction in (range(start + 1, len(frames)), range(start - 1, -1, -1)):
-        follower = _Follower(frames[start][list(chain.order)], chain.score, stills)  # type: ignore[index]
+        follower = _Follower(members, chain.score, stills)
         for t in direction:
             candidates = frames[t]
             if candidates is not None:
@@ -64,13 +70,13 @@ def link(frames: Sequence[NDArray[np.void] | None], count: int | None = None, st
 
 def _reference(frames: Sequence[NDArray[np.void] | None], count: int | None) -> tuple[int, Chain] | None:
     """The frame to start from and its chain: the best chain of the largest believable count."""
-    usable = [t for t, c in enumerate(frames) if c is not None and len(c) >= 3]
+    usable = [(t, c) for t, c in enumerate(frames) if c is not None and len(c) >= 3]
     if not usable:
         return None
     picked = [usable[i] for i in np.unique(np.linspace(0, len(usable) - 1, SAMPLED_FRAMES).astype(int))]
-    found = [(t, chain) for t in picked if (chain := find_chain(frames[t], count))]  # type: ignore[arg-type]
-    if not found and len(picked) < len(usable):
-        found = [(t, chain) for t in usable if (chain := find_chain(frames[t], count))]  # type: ignore[arg-type]
+    found = [(t, chain) for t, c in picked if (chain := find_chain(c, count))]
+    if not found:
+        found = [(t, chain) for t, c in usable if (chain := find_chain(c, count))]
     if not found:
         return None
     sizes = [len(chain.order) for _, chain in found]
@@ -92,37 +98,58 @@ class _Follower:
         self.area = members["area_px2"].copy()
         self.seen = np.ones(len(members), bool)
         self.gaps = np.hypot(*np.diff(self.xy, axis=0).T)
+        self.along = np.concatenate([[0], np.cumsum(self.gaps)]) / self.gaps.mean()
         self.index = np.arange(len(members))
+        self.incomplete = 0
+        self._weights: dict[tuple[bytes, int], tuple[FloatArray, FloatArray]] = {}
 
     def follow(self, candidates: NDArray[np.void]) -> NDArray[np.int64]:
         """(N,) the candidate of each marker in this frame, −1 where left out."""
         found = np.full(len(self.xy), -1) if self.stills else self._near(candidates)
-        if (found >= 0).sum() < max(3, len(self.xy) / 2):
+        missing = int((found < 0).sum())
+        self.incomplete = self.incomplete + 1 if missing else 0
+        if missing > len(found) - max(3, len(found) / 2) or self.incomplete % RETRY_EVERY == RETRY_EVERY - 1:
             found = self._anywhere(candidates, found)
         self._remember(candidates, found)
         return found
 
-    def _expected(self) -> FloatArray:
-        """(N, 2) where the markers should be: carried on by velocity; hidden ones on a parabola through the seen."""
-        expected = self.xy + self.velocity
-        if self.seen.all() or self.seen.sum() < 3:
-            return expected
-        along = np.concatenate([[0], np.cumsum(self.gaps)])
-        for i in np.flatnonzero(~self.seen):
-            near = np.flatnonzero(self.seen)
-            near = near[np.argsort(np.abs(near - i), kind="stable")[:5]]
-            curve = np.polyfit(along[near] - along[i], expected[near], 2)
-            expected[i] = curve[-1]
-        return expected
+    def _neighbours(self, known: NDArray[np.bool_], count: int) -> tuple[FloatArray, FloatArray]:
+        """Lagrange's interpolation of each marker from its nearest known ones, itself left out.
+
+        (N, N) weights, and (N,) the product of its distances to them, in spacings: the factor of the remainder.
+        """
+        key = (known.tobytes(), count)
+        if key not in self._weights:
+            weights, reach = np.zeros((len(known), len(known))), np.ones(len(known))
+            for i in self.index:
+                near = np.flatnonzero(known & (self.index != i))
+                near = near[np.argsort(np.abs(self.along[near] - self.along[i]), kind="stable")[:count]]
+                reach[i] = np.abs(np.prod(self.along[near] - self.along[i]))
+                for a in near:
+                    others = self.along[near[near != a]]
+                    weights[i, a] = np.prod((self.along[i] - others) / (self.along[a] - others))
+            self._weights[key] = weights, reach
+        return self._weights[key]
+
+    def _moved(self, step: FloatArray, known: NDArray[np.bool_]) -> FloatArray:
+        """(N, 2) the row after the known markers moved by `step`; the others move along with their neighbours."""
+        if known.all():
+            return self.xy + step
+        if known.sum() < 3:
+            return np.asarray(
+                self.xy + np.where(known[:, None], step, step[known].mean(axis=0) if known.any() else 0.0)
+            )
+        weights, _ = self._neighbours(known, 3)
+        return np.asarray(self.xy + np.where(known[:, None], step, weights @ step))
 
     def _near(self, candidates: NDArray[np.void]) -> NDArray[np.int64]:
-        none = np.full(len(self.xy), -1)
+        """Candidates of the right size that lie, alone, where a marker is expected."""
         if not len(candidates):
-            return none
-        apart = candidates["xy"][None] - self._expected()[:, None]
+            return np.full(len(self.xy), -1)
+        apart = candidates["xy"][None] - self._moved(self.velocity, self.seen)[:, None]
         distance = np.hypot(apart[..., 0], apart[..., 1])
         ratio = candidates["area_px2"][None] / self.area[:, None]
-        distance[(ratio < SIZE_RANGE[0]) | (ratio > SIZE_RANGE[1]) | (candidates["roundness"] < 0.3)] = np.inf
+        distance[(ratio < SIZE_RANGE[0]) | (ratio > SIZE_RANGE[1]) | (candidates["roundness"] < MIN_ROUNDNESS)] = np.inf
         nearest = distance.argmin(axis=1)
         best = distance[self.index, nearest]
         mutual = distance.argmin(axis=0)[nearest] == self.index
@@ -130,48 +157,64 @@ class _Follower:
         if distance.shape[1] > 1:
             second = np.partition(distance, 1, axis=1)[:, 1]
             found[second < 2 * best + 3] = -1
-        return self._keeps_spacing(candidates, found)
+        return self._in_line(candidates["xy"], found)
 
-    def _keeps_spacing(self, candidates: NDArray[np.void], found: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Leaves out the markers whose distances to both neighbours (one, at an end) have changed too much."""
-        xy = np.where((found >= 0)[:, None], candidates["xy"][found], np.nan)
-        gap = np.hypot(*np.diff(xy, axis=0).T)
-        wrong = np.abs(np.log(gap / self.gaps)) > SPACING_CHANGE
-        if wrong.any():
-            left = np.concatenate([[True], wrong | np.isnan(gap)])
-            right = np.concatenate([wrong | np.isnan(gap), [True]])
-            some = np.concatenate([[False], wrong]) | np.concatenate([wrong, [False]])
-            found = np.where(left & right & some, -1, found)
+    def _in_line(self, xy: FloatArray, found: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Leaves out, worst first, the markers that do not lie in line with their neighbours."""
+        found = found.copy()
+        for _ in range(len(found) - 4):
+            known = found >= 0
+            if known.sum() < 5:
+                break
+            placed = np.where(known[:, None], xy[found], 0.0)
+            weights, reach = self._neighbours(known, 4)
+            off = np.where(known, np.hypot(*(placed - weights @ placed).T), 0.0)
+            if off.max() <= IN_LINE * self.gaps.min():
+                break
+            links = np.diff(placed[known], axis=0)
+            spacing = np.median(np.hypot(*links.T) / np.diff(self.along[known]))
+            turn = np.median(
+                np.abs(np.diff(np.unwrap(np.arctan2(links[:, 1], links[:, 0])))) / np.diff(self.along[known])[1:]
+            )
+            # Cubic interpolation of an arc misses by spacing · turn³ · reach / 4! (its remainder), and noise is amplified.
+            noise = MARKER_NOISE * np.abs(weights).sum(axis=1)
+            over = off / (spacing * (IN_LINE + turn**3 * reach / 24 + noise))
+            # An outlier also throws its neighbours' places off; it is itself the furthest.
+            worst = int(np.argmax(over))
+            if over[worst] <= 1:
+                break
+            found[worst] = -1
         return found
 
     def _anywhere(self, candidates: NDArray[np.void], found: NDArray[np.int64]) -> NDArray[np.int64]:
-        """A whole chain of all N, wherever it lies; else what was found near, if at least two agree."""
+        """A whole chain of all N, wherever it lies; else what was found near."""
         chain = find_chain(candidates, len(self.xy))
-        if chain is None or chain.score < (CERTAIN_SCORE * self.score if not self.stills else -1.0):
+        if chain is None or chain.score < (-1.0 if self.stills else CERTAIN_SCORE * self.score):
             return found
         order = np.array(chain.order)
-        ratio = np.log(candidates["area_px2"][order].mean() / self.area.mean())
-        if abs(ratio) > np.log(SIZE_RANGE[1]):
+        if abs(np.log(candidates["area_px2"][order].mean() / self.area.mean())) > np.log(SIZE_RANGE[1]):
             return found
         xy = candidates["xy"]
         forward, backward = (np.hypot(*(xy[o] - self.xy).T).sum() for o in (order, order[::-1]))
-        self.velocity[:] = 0
         self.seen[:] = False
         return order if forward <= backward else order[::-1]
 
     def _remember(self, candidates: NDArray[np.void], found: NDArray[np.int64]) -> None:
         seen = found >= 0
-        xy = np.where(seen[:, None], candidates["xy"][found] if len(candidates) else np.nan, self._expected())
-        twice = seen & self.seen
-        self.velocity = np.where(twice[:, None], xy - self.xy, 0.0)
-        hidden = ~seen & self.seen.any()
-        if seen.any() or not hidden.all():
-            self.xy = np.where(seen[:, None] | (hidden[:, None] & seen.any()), xy, self.xy)
-        if seen.any():
-            self.area = np.where(seen, candidates["area_px2"][found], self.area)
-            both = seen[1:] & seen[:-1]
-            self.gaps = np.where(both, np.hypot(*np.diff(self.xy, axis=0).T), self.gaps)
-        self.seen = seen
+        if not seen.any():
+            self.velocity[:] = 0
+            self.seen = seen
+            return
+        placed = candidates[found]
+        step = placed["xy"] - self.xy
+        xy = self._moved(step, seen)
+        self.velocity = np.where((seen & self.seen)[:, None], step, 0.0)
+        if not self.seen.any():
+            self.velocity[:] = 0
+        self.area = np.where(seen, placed["area_px2"], self.area)
+        self.xy, self.seen = xy, seen
+        both = seen[1:] & seen[:-1]
+        self.gaps = np.where(both, np.hypot(*np.diff(xy, axis=0).T), self.gaps)
 
 
 def _gather(

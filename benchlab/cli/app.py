@@ -1,0 +1,87 @@
+"""The `benchlab` command: its sub-commands, and the one place where an error becomes a line and an exit code."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from typing import Any
+
+import click
+
+import benchlab
+from benchlab.cli.analyze import analyze
+from benchlab.cli.calibrate import calibrate
+from benchlab.cli.sample_data import sample_data
+from benchlab.errors import BenchlabError, printable
+
+EXIT_BUG, EXIT_INTERRUPTED = 1, 130
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110})
+@click.version_option(benchlab.__version__, prog_name="benchlab")
+@click.option("--debug", is_flag=True, help="Show the traceback of an error.")
+def cli(debug: bool) -> None:
+    """Bench software for soft-robotics labs.
+
+    See: `benchlab analyze VIDEO` finds the markers on a bending actuator and writes its angle against time.
+
+    \b
+    Exit codes: 0 ok, 1 a bug in benchlab, 2 usage, 3 input refused, 4 a batch finished with failures,
+    130 interrupted (what was measured is kept, marked partial).
+    """
+
+
+cli.add_command(analyze)
+cli.add_command(calibrate)
+cli.add_command(sample_data)
+
+
+def run(arguments: list[str] | None = None) -> None:
+    """Run the command line and leave the process with its exit code."""
+    arguments = sys.argv[1:] if arguments is None else arguments
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+    debug, as_json = "--debug" in arguments, "--json" in arguments
+    try:
+        code = cli.main(args=arguments, prog_name="benchlab", standalone_mode=False) or 0
+        sys.stdout.flush()
+    except BenchlabError as error:
+        if debug:
+            raise
+        _say(error, as_json)
+        code = error.exit_code
+    except click.ClickException as error:
+        error.show()
+        if as_json:
+            _print_json(
+                {"error": {"code": 2, "what": error.format_message(), "file": None, "where": None, "hint": None}}
+            )
+        code = 2
+    except (click.Abort, KeyboardInterrupt):
+        click.echo("benchlab: interrupted", err=True)
+        code = EXIT_INTERRUPTED
+    except BrokenPipeError:
+        # Whoever read our output has gone; there is nobody left to tell.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        code = 0
+    except Exception as error:
+        if debug:
+            raise
+        what = f"{type(error).__name__}: {printable(error)}"
+        click.echo(f"benchlab: this is a bug in benchlab: {what}; run again with --debug and report it", err=True)
+        if as_json:
+            _print_json({"error": {"code": EXIT_BUG, "what": what, "file": None, "where": None, "hint": "report it"}})
+        code = EXIT_BUG
+    sys.exit(code)
+
+
+def _say(error: BenchlabError, as_json: bool) -> None:
+    click.echo(f"benchlab: {error}", err=True)
+    if as_json:
+        _print_json(error.as_json())
+
+
+def _print_json(document: dict[str, Any]) -> None:
+    click.echo(json.dumps(document, indent=2))

@@ -1,0 +1,120 @@
+"""`benchlab analyze`: a recording in; its curvature and bending angle against time out, as files."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchlab.io.files import sha256, written_whole
+from benchlab.io.run_file import write_run_file
+from benchlab.io.table import write_series_csv
+from benchlab.workflows.measure import Analysis, Progress, measure, open_source
+from benchlab.workflows.outputs import Outputs, provenance
+from benchlab.workflows.settings import AnalyzeSettings
+
+
+def analyze(
+    source: Path, settings: AnalyzeSettings, outputs: Outputs, progress: Progress | None = None
+) -> dict[str, Any]:
+    """Analyse one recording and write its results; returns its summary, as `--json` shows it.
+
+    A recording whose result is current (same content, settings and version) is not analysed again.
+    Raises UsageError and InputError; then nothing has been written. Ctrl-C ends the reading early: what was seen is
+    written and marked partial.
+    """
+    settings.check()
+    outputs.check(settings.overlay)
+    with outputs.locked():
+        current = outputs.current(source, asdict(settings))
+        if current is not None:
+            return current
+        analysis = measure(source, settings, progress)
+        return save(analysis, settings, outputs)
+
+
+def save(analysis: Analysis, settings: AnalyzeSettings, outputs: Outputs) -> dict[str, Any]:
+    """Write table, figure, overlay and, last, the run file that vouches for them; returns the summary."""
+    from benchlab.report.figures import draw_curvature_figure, save_png
+
+    series, chosen = analysis.series, asdict(settings)
+    summary = summarise(analysis, outputs, settings.overlay)
+    write_series_csv(outputs.table, series)
+    note = f"{analysis.scale.source}; fit: {settings.fit}" + ("; PARTIAL" if analysis.partial else "")
+    figure = draw_curvature_figure(series, analysis.source.name, note)
+    with written_whole(outputs.figure) as temporary:
+        save_png(figure, temporary)
+    if settings.overlay:
+        _write_overlay(analysis, settings, outputs)
+    made = provenance(analysis.source, chosen)
+    written = [p for p in outputs.paths(settings.overlay) if p != outputs.run_file]
+    write_run_file(
+        outputs.run_file,
+        series,
+        settings=chosen,
+        provenance={
+            **made,
+            "partial": analysis.partial,
+            "outputs_sha256": {p.name: sha256(p) for p in written},
+            "summary": summary,
+        },
+        recording={**_plain(vars(analysis.info)), "frames": len(series.time_s)},
+        scale=_plain(vars(analysis.scale)),
+        warnings=list(analysis.warnings),
+        partial=analysis.partial,
+    )
+    return summary
+
+
+def summarise(analysis: Analysis, outputs: Outputs, overlay: bool) -> dict[str, Any]:
+    """The recording in a few numbers, as `--json` prints them. Largest values over the frames without doubt, if any."""
+    series = analysis.series
+    sure = series.measured & np.array([flag in ("", "markers left out") for flag in series.flag])
+    rows = sure if sure.any() else series.measured
+    angle = np.where(rows, series.angle_rad, -np.inf)
+    peak = int(np.argmax(angle))
+    known = series.time_s[np.isfinite(series.time_s)]
+    return {
+        "video": str(analysis.source),
+        "status": "partial" if analysis.partial else "measured",
+        "frames": len(series.time_s),
+        "frames_measured": int(series.measured.sum()),
+        "duration_s": round(float(known.max() - known.min()), 6) if len(known) else None,
+        "scale_mm_per_px": float(analysis.scale.mm_per_px),
+        "max_angle_deg": float(np.degrees(series.angle_rad[peak])),
+        "max_angle_sd_deg": float(np.degrees(series.angle_sd_rad[peak])),
+        "max_curvature_per_mm": float(series.curvature_per_mm[peak]),
+        "fit_rms_px": float(np.sqrt(np.nanmean(series.fit_rms_px[series.measured] ** 2))),
+        "warnings": list(analysis.warnings),
+        "outputs": [str(p) for p in outputs.paths(overlay)],
+    }
+
+
+def _write_overlay(analysis: Analysis, settings: AnalyzeSettings, outputs: Outputs) -> None:
+    """A second pass over the recording, with what was found drawn in."""
+    from benchlab.io.planes import display_bgr
+    from benchlab.io.video_writer import VideoWriter
+    from benchlab.report.overlay import draw_overlay
+
+    info, series = analysis.info, analysis.series
+    with (
+        open_source(analysis.source, replace(settings, allow_partial=True)) as recording,
+        written_whole(outputs.overlay) as path,
+    ):
+        steps = np.diff(series.time_s)
+        rate = 1 / np.median(steps) if np.isfinite(steps).any() else 2.0
+        even = (info.width // 2 * 2, info.height // 2 * 2)
+        with VideoWriter(path, *even, fps=float(rate), crf=20, preset="veryfast") as writer:
+            for frame in recording:
+                if frame.index >= len(series.time_s):
+                    break
+                if frame.planes is not None:
+                    drawn = draw_overlay(display_bgr(frame.planes, info), series, frame.index)
+                    writer.write(drawn[: even[1], : even[0]], frame.time_s if np.isfinite(frame.time_s) else None)
+
+
+def _plain(values: dict[str, Any]) -> dict[str, Any]:
+    """Values as JSON knows them."""
+    return {k: v if isinstance(v, int | float | str | bool | type(None)) else str(v) for k, v in values.items()}

@@ -1,0 +1,218 @@
+"""Where the results of one recording go, whether they are already there, and who may replace them."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import platform
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from hashlib import sha256 as new_sha256
+from pathlib import Path
+from typing import Any
+
+import benchlab
+from benchlab.errors import UsageError
+from benchlab.io.files import check_regular_file, sha256
+from benchlab.io.run_file import read_provenance
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """`<stem>.h5`, `.csv`, `.png` and, if asked for, `.overlay.mp4` in one folder."""
+
+    folder: Path
+    stem: str
+    overwrite: bool = False
+
+    @classmethod
+    def of(cls, source: Path, out: Path | None, overwrite: bool = False) -> Outputs:
+        """Beside the recording, or in `out`."""
+        resolved = source.resolve()
+        return cls(out or resolved.parent, resolved.name if source.is_dir() else resolved.stem, overwrite)
+
+    @property
+    def run_file(self) -> Path:
+        return self.folder / f"{self.stem}.h5"
+
+    @property
+    def table(self) -> Path:
+        return self.folder / f"{self.stem}.csv"
+
+    @property
+    def figure(self) -> Path:
+        return self.folder / f"{self.stem}.png"
+
+    @property
+    def overlay(self) -> Path:
+        return self.folder / f"{self.stem}.overlay.mp4"
+
+    def paths(self, overlay: bool) -> list[Path]:
+        return [self.run_file, self.table, self.figure] + ([self.overlay] if overlay else [])
+
+    def check(self, overlay: bool) -> None:
+        """The folder exists (made if only its last part is missing) and may be written; nothing of others is in the way.
+
+        Results of an earlier benchlab run may be replaced; anything else only with `overwrite`. Raises UsageError.
+        """
+        try:
+            self.folder.mkdir(exist_ok=True)
+        except FileNotFoundError:
+            raise UsageError(
+                "no such folder", file=self.folder.parent, hint="make it, or choose another --out"
+            ) from None
+        except OSError as error:
+            reason = os.strerror(error.errno).lower() if error.errno else str(error)
+            raise UsageError(
+                f"cannot be used as output folder: {reason}", file=self.folder, hint="choose another --out"
+            ) from error
+        if not os.access(self.folder, os.W_OK | os.X_OK):
+            raise UsageError("the output folder is read-only", file=self.folder, hint="choose another --out")
+        ours = {} if self.overwrite else self._written_before()
+        for path in self.paths(overlay):
+            if (
+                path.exists()
+                and not self.overwrite
+                and ours.get(path.name) != "any"
+                and ours.get(path.name) != sha256(path)
+            ):
+                raise UsageError(
+                    "exists and is not a result of this recording as benchlab wrote it",
+                    file=path,
+                    hint="choose another --out, or replace it with --overwrite",
+                )
+
+    def _written_before(self) -> dict[str, str]:
+        """Names of the files of an earlier run here, with their SHA-256; the run file itself needs none."""
+        provenance = read_provenance(self.run_file)
+        return {} if provenance is None else {self.run_file.name: "any", **provenance.get("outputs_sha256", {})}
+
+    def current(self, source: Path, settings: dict[str, Any]) -> dict[str, Any] | None:
+        """The summary of an earlier, complete run with the same content, settings and version, if it is all there."""
+        provenance = None if self.overwrite else read_provenance(self.run_file)
+        if (
+            provenance is None
+            or provenance.get("partial")
+            or provenance.get("key") != _key(content_hash(source), settings)
+        ):
+            return None
+        for name, digest in provenance["outputs_sha256"].items():
+            path = self.folder / name
+            if not path.is_file() or sha256(path) != digest:
+                return None
+        return {**provenance["summary"], "status": "current"}
+
+    @contextmanager
+    def locked(self) -> Iterator[None]:
+        """Only one benchlab at a time writes these results. Raises UsageError naming the process that does."""
+        lock = self.folder / f".{self.stem}.lock"
+        for attempt in (1, 2):
+            try:
+                handle = os.open(lock, os.O_CREAT | os.O_EXCL | os.O_WRONLY)
+                break
+            except FileExistsError:
+                holder = _holder(lock)
+                if holder and attempt == 1 and not _alive(holder):
+                    with contextlib.suppress(FileNotFoundError):
+                        lock.unlink()
+                    continue
+                raise UsageError(
+                    f"is being written by another benchlab ({holder or 'just started'})",
+                    file=self.run_file,
+                    hint=f"wait for it, or remove {lock.name} if that process is gone",
+                ) from None
+        os.write(handle, f"process {os.getpid()} on {platform.node()}".encode())
+        os.close(handle)
+        try:
+            yield
+        finally:
+            with contextlib.suppress(FileNotFoundError):
+                lock.unlink()
+
+
+def _holder(lock: Path) -> str:
+    try:
+        return lock.read_text()
+    except OSError:
+        return ""
+
+
+def _alive(holder: str) -> bool:
+    """Whether the process named in a lock still runs; one on another computer is taken to."""
+    words = holder.split()
+    if len(words) != 4 or words[3] != platform.node():
+        return True
+    try:
+        os.kill(int(words[1]), 0)
+    except (ProcessLookupError, ValueError):
+        return False
+    except OSError:
+        return True
+    return True
+
+
+def content_hash(source: Path) -> str:
+    """SHA-256 of a recording: of the file, or of the names and bytes in a folder."""
+    if not source.is_dir():
+        check_regular_file(source)
+        return sha256(source)
+    digest = new_sha256()
+    for path in sorted(p for p in source.iterdir() if p.is_file() and not p.name.startswith(".")):
+        digest.update(f"{path.name}\0{sha256(path)}\0".encode())
+    return digest.hexdigest()
+
+
+def _key(content: str, settings: dict[str, Any]) -> str:
+    """One number for content, settings and version; files named in the settings enter by their content."""
+    inputs = {name: sha256(Path(settings[name])) for name in ("lens", "pressure") if settings.get(name)}
+    whole = json.dumps([content, settings, inputs, benchlab.__version__], sort_keys=True)
+    return new_sha256(whole.encode()).hexdigest()
+
+
+def provenance(source: Path, settings: dict[str, Any]) -> dict[str, Any]:
+    """Who made a result, from what and how: enough to make it again."""
+    content = content_hash(source)
+    versions = {"benchlab": benchlab.__version__, "python": platform.python_version()}
+    for name in ("numpy", "av", "cv2", "h5py"):
+        versions[name] = getattr(sys.modules.get(name), "__version__", "not loaded")
+    return {
+        "created": datetime.now(UTC).isoformat(timespec="seconds"),
+        "argv": sys.argv,
+        "versions": versions,
+        "git": _git_hash(),
+        "source": str(source),
+        "sha256": content,
+        "key": _key(content, settings),
+    }
+
+
+def _git_hash() -> str | None:
+    """The commit of a source checkout that this code runs from, if it does."""
+    top = Path(benchlab.__file__).parent.parent
+    if not (top / ".git").exists():
+        return None
+    try:
+        found = subprocess.run(
+            ["git", "rev-parse", "HEAD"], cwd=top, capture_output=True, text=True, timeout=5, check=False
+        )
+    except (OSError, subprocess.TimeoutExpired):
+        return None
+    return found.stdout.strip() or None
+
+
+def refuse_same_names(outputs: list[Outputs]) -> None:
+    """Raises UsageError where two recordings would write the same files."""
+    seen: dict[Path, Outputs] = {}
+    for item in outputs:
+        if item.run_file in seen:
+            raise UsageError(
+                f"two inputs would both be written as {item.run_file.name}",
+                file=item.folder,
+                hint="analyse them into different --out folders",
+            )
+        seen[item.run_file] = item
