@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from benchlab.errors import InputError
 from benchlab.io.files import check_regular_file
+from benchlab.io.global_heap import global_heaps_are_sound
 
 MAX_BYTES = 2_000_000_000
 """Bytes that may be read out of one file."""
@@ -45,6 +46,8 @@ def open_hdf5(path: Path, kind: str = "HDF5 file") -> Iterator[Reader]:
         raise InputError(f"not a {kind}", file=path)
     try:
         with h5py.File(path, "r", locking="best-effort") as file:
+            if not global_heaps_are_sound(path):
+                raise InputError(f"checksum error in the texts of a {kind}", file=path, hint=_CHECKSUM_HINT)
             yield Reader(path, file, kind)
     except DAMAGE as error:
         if "truncated" in str(error).lower():
@@ -146,7 +149,7 @@ class Reader:
         )
 
     def _damaged(self, name: str, error: Exception) -> InputError:
-        if isinstance(error, MemoryError) or "checksum" in str(error).lower():
+        if any(word in str(error).lower() for word in ("checksum", "filter returned failure")):
             return InputError(f"checksum error in dataset {name}", file=self.path, hint=_CHECKSUM_HINT)
         return InputError(f"dataset {name} is damaged", file=self.path, hint=_CHECKSUM_HINT)
 
