@@ -22,6 +22,7 @@ POOLED_FRAMES = 31  # a frame and its neighbours, whose scatter is taken togethe
 NOT_CIRCULAR = 0.005  # scatter about the circle, as a share of the arc, from which a body is no circular arc
 NOT_NOISE = 4.0  # and by how much that scatter must exceed the jitter of the markers in time
 DOUBTFUL_SD_RAD = np.radians(1.5)
+STRAIGHT = 1e-9  # rad: a smaller bend has no radius, noise or not
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,7 @@ def measure_curvature(
     scale_sd = scale.sd_mm_per_px / scale.mm_per_px
     kappa = curvature * per_mm
     kappa_sd = np.hypot(curvature_sd * per_mm, kappa * scale_sd)
-    bent = np.abs(kappa) > 2 * kappa_sd
+    bent = np.abs(kappa) > np.maximum(2 * kappa_sd, STRAIGHT / body.length_mm)
     radius = np.divide(1.0, np.abs(kappa), out=np.full(len(kappa), np.nan), where=bent)
     series = CurvatureSeries(
         time_s=time_s,
