@@ -74,6 +74,7 @@ def write_clip(
                 stream.set_display_rotation(rotation_ccw_deg)
             outputs.append(stream)
         sound = write_silence(container) if audio else []
+        container.start_encoding()
         for index in range(frames):
             picture = draw(index) if draw else drawn(index, width, height)
             for stream in outputs:

@@ -14,6 +14,14 @@ PICTURE_MAGIC: dict[bytes, str] = {
     b"II*\x00": "tiff",
     b"MM\x00*": "tiff",
 }
+FILM_MAGIC: dict[bytes, str] = {
+    b"\x1aE\xdf\xa3": "matroska",
+    b"OggS": "ogg",
+    b"GIF8": "gif",
+    b"FLV\x01": "flv",
+    b"\x00\x00\x01\xba": "mpeg",
+}
+TS_PACKET, TS_SYNC = 188, 0x47
 TEXT_BYTES = frozenset(b"\t\n\r\f\x1b") | frozenset(range(0x20, 0x100))
 UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 MP4_BOXES = frozenset(
@@ -38,6 +46,23 @@ def picture_codec(head: bytes) -> str | None:
     'mjpeg'
     """
     return next((codec for magic, codec in PICTURE_MAGIC.items() if head.startswith(magic)), None)
+
+
+def film_format(head: bytes) -> str | None:
+    """FFmpeg's demuxer for a film that begins like this, None to let FFmpeg find out.
+
+    Stated where the bytes tell, because FFmpeg's own guess also weighs the name: `a%03d.jpg` would be a pattern.
+
+    >>> film_format(b"\\x00\\x00\\x00\\x20ftypisom")
+    'mov'
+    """
+    if head[4:8] in MP4_BOXES:
+        return "mov"
+    if head.startswith(b"RIFF") and head[8:12] == b"AVI ":
+        return "avi"
+    if len(head) > 2 * TS_PACKET and head[0] == head[TS_PACKET] == head[2 * TS_PACKET] == TS_SYNC:
+        return "mpegts"
+    return next((name for magic, name in FILM_MAGIC.items() if head.startswith(magic)), None)
 
 
 def check_not_text(path: Path, head: bytes) -> None:

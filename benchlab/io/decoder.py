@@ -16,7 +16,7 @@ from av.video.frame import VideoFrame
 from av.video.stream import VideoStream
 
 from benchlab.errors import InputError
-from benchlab.io.container import check_not_text, read_head, refusal
+from benchlab.io.container import check_not_text, film_format, read_head, refusal
 
 FORMATS = (
     "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi,mpegts,mpeg,ogg,gif,flv,asf,mjpeg,h264,hevc,m4v,mpegvideo,ivf,obu,"
@@ -32,6 +32,11 @@ PENDING_LIMIT = 256
 VERBOSE, INFO = 40, 32
 
 
+def decoder_limit(max_pixels: int) -> dict[str, str]:
+    """The guard inside the decoder; looser than the check of the header, since decoders round sizes up to blocks."""
+    return {"max_pixels": str(min(max_pixels + max_pixels // 4 + 1_000_000, 2**31 - 1))}
+
+
 def open_container(path: Path, max_pixels: int) -> InputContainer:
     """A real container in a regular file, opened; nothing else is reachable from here: no network, no second file.
 
@@ -40,7 +45,7 @@ def open_container(path: Path, max_pixels: int) -> InputContainer:
     head = read_head(path)
     check_not_text(path, head)
     try:
-        return _open(path, {"max_pixels": str(max_pixels)})
+        return _open(path, decoder_limit(max_pixels))
     except (FFmpegError, ValueError, OSError, IndexError, RuntimeError) as error:
         raise refusal(path, head) from error
 
@@ -48,19 +53,19 @@ def open_container(path: Path, max_pixels: int) -> InputContainer:
 def claimed_size(path: Path, index: int) -> tuple[int, int]:
     """(width, height) that the header claims for a stream, read without decoding a picture."""
     try:
-        with _open(path, {"skip_frame": "all"}) as container:
+        with _open(path, {}, codec_whitelist="none") as container:
             context = container.streams[index].codec_context
             return (context.width, context.height) if isinstance(context, VideoCodecContext) else (0, 0)
     except (FFmpegError, ValueError, OSError, IndexError, RuntimeError):
         return 0, 0
 
 
-def _open(path: Path, options: dict[str, str]) -> InputContainer:
+def _open(path: Path, options: dict[str, str], **container_options: str) -> InputContainer:
     return av.open(
         f"file:{path.absolute()}",  # so that neither a dash, a percent sign nor a colon in the name means anything
-        format=RAW_SUFFIXES.get(path.suffix.lower()),
+        format=RAW_SUFFIXES.get(path.suffix.lower()) or film_format(read_head(path)),
         options=options,
-        container_options={"protocol_whitelist": "file", "format_whitelist": FORMATS},
+        container_options={"protocol_whitelist": "file", "format_whitelist": FORMATS} | container_options,
         metadata_errors="replace",
     )
 

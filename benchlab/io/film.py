@@ -13,7 +13,15 @@ from av.video.stream import VideoStream
 
 from benchlab.errors import InputError, UsageError
 from benchlab.io.container import missing_bytes, read_head
-from benchlab.io.decoder import RAW_FORMATS, Decoder, chroma_location, claimed_size, open_container, translated
+from benchlab.io.decoder import (
+    RAW_FORMATS,
+    Decoder,
+    chroma_location,
+    claimed_size,
+    decoder_limit,
+    open_container,
+    translated,
+)
 from benchlab.io.files import check_regular_file
 from benchlab.io.film_checks import DAMAGED, NOT_ADVANCING, Account, check_rates, check_size
 from benchlab.io.orientation import frame_orientation
@@ -94,7 +102,7 @@ class Film(Recording):
         check_size(self._path, *size, self._max_pixels)
         # Frame threads conceal damage differently from run to run; slice threads give the same pixels each time.
         context.thread_type = "SLICE" if self._allow_partial else "AUTO"
-        context.options = {"max_pixels": str(self._max_pixels)} | ({"skip_loop_filter": "all"} if self._fast else {})
+        context.options = decoder_limit(self._max_pixels) | ({"skip_loop_filter": "all"} if self._fast else {})
         self._video = stream
         return Decoder(self._container, stream, self._path)
 

@@ -35,7 +35,7 @@ def open_recording(
     max_pixels: limit on width × height, checked before anything is decoded.
 
     Frame times are presentation stamps less the first one. A damaged frame and one whose stamp does not advance have
-    planes None and say why; those after a damaged one, up to the next key frame, have planes and a reason to doubt them.
+    planes None and say why; those after a damaged one, to the next key frame, have planes and a reason to doubt them.
     Without `allow_partial`, iteration ends in InputError if anything was lost.
     Raises UsageError for a path that is no file or folder, for a stream that is not there and where `fps` is needed,
     and InputError for whatever is not a whole, coloured, moderately sized recording, with the reason.

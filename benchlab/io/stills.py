@@ -17,6 +17,7 @@ from av.video.frame import VideoFrame
 
 from benchlab.errors import InputError, UsageError
 from benchlab.io.container import picture_codec, read_head
+from benchlab.io.decoder import decoder_limit
 from benchlab.io.files import check_regular_file
 from benchlab.io.film_checks import check_rates, check_size
 from benchlab.io.picture_header import picture_orientation, picture_size
@@ -79,7 +80,7 @@ def read_still(path: Path, max_pixels: int) -> Still:
         check_size(path, *size, max_pixels)
     context = av.CodecContext.create(codec, "r")
     assert isinstance(context, VideoCodecContext)
-    context.options = {"max_pixels": str(max_pixels)} | ({"err_detect": "explode"} if codec == "mjpeg" else {})
+    context.options = decoder_limit(max_pixels) | ({"err_detect": "explode"} if codec == "mjpeg" else {})
     try:
         frames = context.decode(Packet(data)) or context.decode(None)
     except (FFmpegError, ValueError, RuntimeError) as error:
