@@ -13,6 +13,7 @@ every text beside its SHA-256, and HDF5's own structures under theirs (file form
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -61,7 +62,7 @@ def write_run_file(
 ) -> None:
     """Write a run file whole or not at all. The dictionaries hold what JSON can hold, paths and numpy numbers too.
 
-    Raises InputError where the disk refuses, ValueError for a dictionary with a value that is not finite.
+    Numbers in them that are not finite become None. Raises InputError where the disk refuses.
     """
     documents = dict(zip(_DOCUMENTS, (dict(settings), dict(provenance), dict(recording), dict(scale), list(warnings))))
     image = _image(path, series, documents, partial)
@@ -103,7 +104,7 @@ def _image(path: Path, series: CurvatureSeries, documents: Mapping[str, Any], pa
         entry = file.create_group("entry")
         entry.attrs.update({"NX_class": "NXentry", "default": "curvature"})
         for document, content in documents.items():
-            text = json.dumps(content, allow_nan=False, default=_plain)
+            text = json.dumps(_plain(content), allow_nan=False)
             add_texts(entry, document, text, f"{document} (JSON)")
         axis = _write_curvature(entry, series)
         _write_tracks(entry, series, axis)
@@ -114,11 +115,16 @@ def _image(path: Path, series: CurvatureSeries, documents: Mapping[str, Any], pa
 
 
 def _plain(value: object) -> object:
+    """The same in JSON's own types; a number that is not finite is null, as JSON has none."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
     if isinstance(value, np.generic | np.ndarray):
-        return value.tolist()
+        return _plain(value.tolist())
     if isinstance(value, Path):
         return str(value)
-    raise TypeError(f"{type(value).__name__} cannot be written as JSON")
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _nxdata(entry: h5py.Group, name: str, signal: str, axes: Sequence[str], title: str) -> h5py.Group:

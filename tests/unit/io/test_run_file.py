@@ -331,10 +331,14 @@ def test_provenance_is_read_alone_and_only_from_finished_runs(tmp_path):
     assert read_run_file(path).partial
 
 
-def test_a_value_that_is_not_finite_is_not_written_as_json(tmp_path):
-    with pytest.raises(ValueError, match="JSON compliant"):
-        write_run_file(tmp_path / "run.h5", bend(), **{**ABOUT, "scale": {"mm_per_px": float("nan")}})
-    assert list(tmp_path.iterdir()) == []
+def test_a_value_that_is_not_finite_is_none_in_json(tmp_path):
+    scale = {"mm_per_px": float("nan"), "all": [1.0, np.inf, (np.float32("nan"), 2)], "size": np.arange(2)}
+    write_run_file(tmp_path / "run.h5", bend(), **{**ABOUT, "scale": scale})
+    assert read_run_file(tmp_path / "run.h5").scale == {
+        "mm_per_px": None,
+        "all": [1.0, None, [None, 2]],
+        "size": [0, 1],
+    }
 
 
 def test_a_full_disk_leaves_the_old_result(run):
