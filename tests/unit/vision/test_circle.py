@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.linalg import eig
 from scipy.optimize import least_squares
 
 from benchlab.errors import UsageError
@@ -33,6 +34,37 @@ def test_published_geometric_solution():
     assert fit.radius[0] == pytest.approx(4.7142, abs=5e-5)
     gradient = np.hypot(*(GANDER_GOLUB_STREBEL - fit.centre[0]).T) - fit.radius[0]
     assert gradient.sum() == pytest.approx(0, abs=1e-11)  # at the least-squares circle the distances add up to 0
+
+
+@pytest.mark.parametrize("method", ["pratt", "taubin", "hyper"])
+@pytest.mark.parametrize("points", [GANDER_GOLUB_STREBEL, 7 * GANDER_GOLUB_STREBEL @ [[0.6, 0.8], [-0.8, 0.6]] + 3])
+def test_algebraic_fits_are_the_constrained_minima_of_their_papers(method, points):
+    """Al-Sharadqah & Chernov (2009), Eqs for N of each method, in raw coordinates, by scipy's generalised eigensolver."""
+    x, y = points.T
+    z = x**2 + y**2
+    rows = np.stack([z, x, y, np.ones(6)], axis=1)
+    mx, my, mz = x.mean(), y.mean(), z.mean()
+    constraint_taubin = np.array([[4 * mz, 2 * mx, 2 * my, 0], [2 * mx, 1, 0, 0], [2 * my, 0, 1, 0], [0, 0, 0, 0]])
+    constraint_pratt = np.array([[0, 0, 0, -2], [0, 1, 0, 0], [0, 0, 1, 0], [-2, 0, 0, 0]])
+    constraint = {
+        "taubin": constraint_taubin,
+        "pratt": constraint_pratt,
+        "hyper": 2 * constraint_taubin - constraint_pratt,
+    }[method]
+    values, vectors = eig(rows.T @ rows / 6, constraint)
+    usable = np.isfinite(values) & (values.real > 0)
+    a, b, c, d = vectors[:, np.argmin(np.where(usable, values.real, np.inf))].real
+    fit = one(points, method=method)
+    np.testing.assert_allclose(fit.centre[0], (-b / (2 * a), -c / (2 * a)), rtol=1e-8)
+    assert fit.radius[0] == pytest.approx(np.sqrt(b**2 + c**2 - 4 * a * d) / abs(2 * a), rel=1e-8)
+
+
+def test_kasa_is_linear_least_squares():
+    x, y = GANDER_GOLUB_STREBEL.T
+    (b, c, d), *_ = np.linalg.lstsq(np.stack([x, y, np.ones(6)], axis=1), -(x**2 + y**2), rcond=None)
+    fit = one(GANDER_GOLUB_STREBEL, method="kasa")
+    np.testing.assert_allclose(fit.centre[0], (-b / 2, -c / 2))
+    assert fit.radius[0] == pytest.approx(np.sqrt(b**2 / 4 + c**2 / 4 - d))
 
 
 @pytest.mark.parametrize("method", FITS)

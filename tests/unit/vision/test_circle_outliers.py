@@ -126,6 +126,9 @@ def test_the_criterion_in_numbers():
     known = {"reference": np.array([1.0]), "reference_dof": np.array([np.inf])}
     unknown = {"reference": np.array([3.0]), "reference_dof": np.array([np.inf])}
     six = np.array([6.0])
+    sure = {"reference": np.array([0.2]), "reference_dof": np.array([np.inf])}
+    assert not is_outlier(np.array([25.0]), six, **numbers, **sure)[0]  # F = 19: smooth misfit is not excluded
+    assert is_outlier(np.array([27.0]), six, **numbers, **sure)[0]
     assert not is_outlier(np.array([22.0]), six, **numbers, **known)[0]
     assert is_outlier(np.array([42.0]), six, **numbers, **known)[0]
     assert not is_outlier(np.array([42.0]), six, **numbers, **unknown)[0]
