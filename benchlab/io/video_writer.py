@@ -130,9 +130,11 @@ class VideoWriter:
             raise InputError(f"writing failed: {error}", file=self.path, where=f"frame {self.frames}") from error
 
     def close(self) -> None:
-        """Write what the encoder still holds, and the index."""
-        if self.frames:
-            self._encode(None)
+        """Write what the encoder still holds, and the index. Raises InputError for a film without frames."""
+        if not self.frames:
+            self._container.close()
+            raise InputError("a film without frames cannot be written", file=self.path)
+        self._encode(None)
         try:
             self._container.close()
         except (FFmpegError, ValueError, OSError) as error:

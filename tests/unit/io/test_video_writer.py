@@ -94,3 +94,8 @@ def test_unknown_codec_and_missing_folder(tmp_path: Path) -> None:
         VideoWriter(tmp_path / "a.mp4", 96, 64, codec="none")
     with pytest.raises(InputError, match=r"a\.mp4"), VideoWriter(tmp_path / "none" / "a.mp4", 96, 64) as writer:
         writer.write(patches())
+
+
+def test_without_frames(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="without frames"), VideoWriter(tmp_path / "a.mp4", 96, 64):
+        pass
