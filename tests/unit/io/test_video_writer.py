@@ -85,8 +85,10 @@ def test_sizes_are_checked(tmp_path: Path) -> None:
 
 def test_planes_of_another_matrix_are_refused(tmp_path: Path) -> None:
     zeros = np.zeros((64, 96), np.uint8)
-    with VideoWriter(tmp_path / "a.mp4", 96, 64) as writer, pytest.raises(ValueError, match="range and matrix"):
-        writer.write(Planes(zeros, zeros[::2, ::2], zeros[::2, ::2], matrix="bt601"))
+    with VideoWriter(tmp_path / "a.mp4", 96, 64) as writer:
+        writer.write(patches())
+        with pytest.raises(ValueError, match="range and matrix"):
+            writer.write(Planes(zeros, zeros[::2, ::2], zeros[::2, ::2], matrix="bt601"))
 
 
 def test_unknown_codec_and_missing_folder(tmp_path: Path) -> None:
