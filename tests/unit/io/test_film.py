@@ -314,6 +314,28 @@ def test_flipped_bytes(make_clip: Clip, tmp_path: Path) -> None:
     assert any("predicted from them" in warning for warning in film.warnings)
 
 
+def test_what_the_decoder_flags_is_damaged(make_clip: Clip, tmp_path: Path) -> None:
+    """Frames that FFmpeg hands out with its errors concealed: none of them is given on."""
+    data = bytearray(make_clip("a.mp4", **FASTSTART, size=(160, 120)).read_bytes())
+    rng = np.random.default_rng(4)
+    for at in rng.integers(data.find(b"mdat") + 100, len(data), 100):
+        data[at] ^= int(rng.integers(1, 256))
+    path = damaged(tmp_path / "flip.mp4", data)
+    with av.open(str(path)) as container:
+        stream = container.streams.video[0]
+        flagged = {float(f.pts * stream.time_base) for p in container.demux(stream) for f in decoded(p) if f.is_corrupt}
+    frames, _ = read(path, allow_partial=True)
+    assert len(flagged) > 3
+    assert flagged <= {f.time_s for f in frames if f.planes is None}
+
+
+def decoded(packet: Any) -> list[Any]:
+    try:
+        return list(packet.decode())
+    except av.error.InvalidDataError:
+        return []
+
+
 @pytest.mark.parametrize(("name", "codec"), [("a.mkv", "libx264"), ("a.webm", "libvpx-vp9"), ("a.avi", "mpeg4")])
 def test_cut_where_the_container_ends_silently(make_clip: Clip, tmp_path: Path, name: str, codec: str) -> None:
     data = make_clip(name, codec=codec, frames=60).read_bytes()
