@@ -7,6 +7,7 @@ the spot stands out plainly from an even surround, and chroma where it lies on a
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 
 import cv2
@@ -33,6 +34,9 @@ CANDIDATE = np.dtype(
 MAX_SPOTS = 120  # a picture with more has the wrong threshold; the largest are kept
 MIN_SPOT_SAMPLES = 4  # chroma samples: a marker is at least about 5 luma pixels wide
 MAX_RADIUS = 60.0  # chroma samples; anything wider is no marker
+# Radii, as (factor of the spot's, samples more): the spot with its blurred edge lies inside INNER, its surround between.
+INNER, OUTER = (1.25, 1.5), (1.6, 2.5)
+CORE = 0.5
 
 
 @dataclass(frozen=True)
@@ -61,9 +65,9 @@ def find_candidates(
     offset = np.array(planes.chroma_offset, float)
 
     found = np.zeros(len(radii), CANDIDATE)
-    in_chroma = _measure(score, centres, radii)
+    in_chroma = _measure(score, centres, radii, passes=2)
     coarse = in_chroma.xy * step + offset
-    in_luma = _measure(planes.luma, coarse, radii * np.sqrt(step[0] * step[1]))
+    in_luma = _measure(planes.luma, coarse, radii * np.sqrt(step[0] * step[1]), passes=1)
     chroma_variance = in_chroma.variance * step[0] * step[1]
     share = chroma_variance / (chroma_variance + in_luma.variance)
     apart = np.hypot(*(in_luma.xy - coarse).T) > 0.5 * radii * step[0]
@@ -96,10 +100,8 @@ def _spots(score: UInt8Array, threshold: float, region: Region | None) -> tuple[
         inside = x > 0 and y > 0 and x + w < width and y + h < height
         if not inside or w * h < MIN_SPOT_SAMPLES or max(w, h) > 2 * MAX_RADIUS:
             continue
-        # Lattice points inside and on the contour (Pick's theorem), from its area and its length in king's steps.
-        around = cv2.contourArea(contour)
-        steps = np.abs(np.diff(contour[:, 0], axis=0, append=contour[:1, 0])).max(axis=1).sum() if len(contour) > 1 else 0
-        samples = around + steps / 2 + 1
+        # Lattice points inside and on the contour (Pick's theorem), whose steps are 1 or √2 long.
+        samples = cv2.contourArea(contour) + cv2.arcLength(contour, True) / 2.4 + 1
         if samples >= MIN_SPOT_SAMPLES:
             spots.append((left + x + (w - 1) / 2, top + y + (h - 1) / 2, np.sqrt(samples / np.pi)))
     table = np.array(spots, float).reshape(-1, 3)
@@ -119,69 +121,73 @@ class _Measured:
     isolation: FloatArray
 
 
-def _measure(plane: UInt8Array, centres: FloatArray, radii: FloatArray) -> _Measured:
-    """Background-corrected centroids of n spots at `centres` (n, 2) with radii (n,), all in samples of the plane."""
-    reach = int(np.ceil(1.7 * min(radii.max(), MAX_RADIUS * 2) + 3))
+@functools.cache
+def _monomials(reach: int) -> tuple[FloatArray, FloatArray]:
+    """1, x, y, x², xy, y² over a window of (2·reach + 1)² samples about its middle: (samples, 6), and (4, samples)."""
+    axis = np.arange(-reach, reach + 1, dtype=np.float32)
+    y, x = (a.ravel() for a in np.meshgrid(axis, axis, indexing="ij"))
+    basis = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=1)
+    return basis, np.ascontiguousarray(np.stack([x * x + y * y, x, y, np.ones_like(x)]))
+
+
+def _measure(plane: UInt8Array, centres: FloatArray, radii: FloatArray, passes: int) -> _Measured:
+    """Background-corrected centroids of n spots at `centres` (n, 2) with radii (n,), all in samples of the plane.
+
+    All sums over windows are products with the monomials of `_monomials`, so that moments about any centre follow.
+    """
+    reach = int(np.ceil(OUTER[0] * min(radii.max(), 2 * MAX_RADIUS) + OUTER[1])) + 1
     height, width = plane.shape
     reach = min(reach, (min(height, width) - 1) // 2)
     size = 2 * reach + 1
     origin = np.clip(np.rint(centres).astype(int) - reach, 0, (width - size, height - size))
-    window = sliding_window_view(plane, (size, size))[origin[:, 1], origin[:, 0]].astype(np.float32)
-    start = (centres - origin).astype(np.float32)
-    radius = radii.astype(np.float32)[:, None, None]
-    axis = np.arange(size, dtype=np.float32)
+    basis, circle = _monomials(reach)
+    window = sliding_window_view(plane, (size, size))[origin[:, 1], origin[:, 0]].reshape(len(radii), -1)
+    window = window.astype(np.float32)
+    start = centres - origin - reach
 
-    def geometry(centre: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        x = axis[None, None, :] - centre[:, 0, None, None]
-        y = axis[None, :, None] - centre[:, 1, None, None]
-        return x, y, x * x + y * y
-
-    inner, outer = 1.25 * radius + 1.5, 1.6 * radius + 2.5
-    x, y, squared = geometry(start)
-    ring = ((squared > inner**2) & (squared < outer**2)).astype(np.float32)
-    core = (squared < np.maximum(0.5 * radius, 0.75) ** 2).astype(np.float32)
-    ring_count = np.maximum(ring.sum((1, 2)), 1)
-    ring_window = ring * window
-    background = ring_window.sum((1, 2)) / ring_count
-    slope_x = (ring_window * x).sum((1, 2)) - background * (ring * x).sum((1, 2))
-    slope_y = (ring_window * y).sum((1, 2)) - background * (ring * y).sum((1, 2))
-    spread = np.maximum((ring * squared).sum((1, 2)) / 2, 1)
-    excess = (
-        window
-        - background[:, None, None]
-        - (slope_x / spread)[:, None, None] * x
-        - (slope_y / spread)[:, None, None] * y
-    )
-    core_count = np.maximum(core.sum((1, 2)), 1)
-    contrast = (core * excess).sum((1, 2)) / core_count
-    ring_variance = (ring * excess**2).sum((1, 2)) / ring_count
-    core_variance = np.maximum((core * excess**2).sum((1, 2)) / core_count - contrast**2, 0)
-    sign = np.where(contrast < 0, -1.0, 1.0).astype(np.float32)
-    strength = np.maximum(np.abs(contrast), 1e-3).astype(np.float32)
-    share = excess * (sign / strength)[:, None, None]
+    squared = _squared(circle, start)
+    radius = radii[:, None].astype(np.float32)
+    inner, outer = (INNER[0] * radius + INNER[1]) ** 2, (OUTER[0] * radius + OUTER[1]) ** 2
+    ring = (squared > inner).astype(np.float32)
+    ring *= squared < outer
+    # A plane through the surround, by least squares over the ring, taken off the window.
+    sums, values = ring @ basis, (ring * window) @ basis[:, :3]
+    normal = sums[:, [0, 1, 2, 1, 3, 4, 2, 4, 5]].reshape(-1, 3, 3).astype(float) + 1e-6 * np.eye(3)
+    surround = np.linalg.solve(normal, values[:, :, None].astype(float))[:, :, 0]
+    window -= surround.astype(np.float32) @ basis[:, :3].T
+    ring_variance = np.einsum("ij,ij,ij->i", ring, window, window) / np.maximum(sums[:, 0], 1)
+    core = (squared < np.maximum(CORE * radius, 0.75) ** 2).astype(np.float32)
+    core_count = np.maximum(core.sum(axis=1), 1)
+    core *= window
+    contrast = core.sum(axis=1) / core_count
+    core_variance = np.maximum(np.einsum("ij,ij->i", core, window) / core_count - contrast**2, 0)
+    strength = np.where(np.abs(contrast) < 1e-3, 1e-3, contrast)
+    window /= strength[:, None]
 
     centre = start
-    for _ in range(2):
-        x, y, squared = geometry(centre)
-        weight = share * (squared < inner**2)
-        total = np.maximum(weight.sum((1, 2)), 1e-3)
-        centre = centre + np.stack([(weight * x).sum((1, 2)), (weight * y).sum((1, 2))], axis=1) / total[:, None]
-        centre = np.clip(centre, start - radii[:, None], start + radii[:, None]).astype(np.float32)
-    x, y, squared = geometry(centre)
-    support = squared < inner**2
-    weight = share * support
-    total = np.maximum(weight.sum((1, 2)), 1e-3)
-    xx, yy, xy = ((weight * a * b).sum((1, 2)) / total for a, b in ((x, x), (y, y), (x, y)))
-    mean, half = (xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
-    roundness = np.sqrt(np.clip(mean - half, 0, None) / np.maximum(mean + half, 1e-6))
+    for again in range(passes):
+        if again:
+            squared = _squared(circle, centre)
+        support = (squared < inner).astype(np.float32)
+        moments = ((support * window) @ basis).astype(float)
+        total = np.maximum(moments[:, 0], 1e-3)
+        centre = np.clip(moments[:, 1:3] / total[:, None], start - radii[:, None], start + radii[:, None])
+    second = moments[:, 3:] / total[:, None] - centre[:, [0, 0, 1]] * centre[:, [0, 1, 1]]
+    mean, half = (second[:, 0] + second[:, 2]) / 2, np.hypot((second[:, 0] - second[:, 2]) / 2, second[:, 1])
+    spread = np.einsum("ij,ij->i", support, squared)
     noise = (ring_variance + core_variance) / strength**2
-    variance = (noise + 1e-6) * (support * squared).sum((1, 2)) / 2 / total**2
     return _Measured(
-        xy=(centre + origin).astype(float),
-        variance=variance.astype(float),
-        area=total.astype(float),
-        roundness=roundness.astype(float),
-        contrast=(sign * strength).astype(float),
-        level=(background + contrast).astype(float),
-        isolation=(1 - np.minimum(np.sqrt(ring_variance) / strength, 1)).astype(float),
+        xy=centre + origin + reach,
+        variance=(noise + 1e-6) * spread / 2 / total**2,
+        area=total,
+        roundness=np.sqrt(np.clip(mean - half, 0, None) / np.maximum(mean + half, 1e-6)),
+        contrast=contrast.astype(float),
+        level=contrast + surround[:, 0] + (surround[:, 1:] * start).sum(axis=1),
+        isolation=1 - np.minimum(np.sqrt(ring_variance) / np.abs(strength), 1),
     )
+
+
+def _squared(circle: FloatArray, centre: FloatArray) -> FloatArray:
+    """(n, samples) squared distances from the centres (n, 2), relative to the middle of the window."""
+    x, y = centre[:, 0], centre[:, 1]
+    return np.asarray(np.stack([np.ones_like(x), -2 * x, -2 * y, x * x + y * y], axis=1).astype(np.float32) @ circle)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -100,7 +100,7 @@ def _write_overlay(analysis: Analysis, settings: AnalyzeSettings, outputs: Outpu
 
     info, series = analysis.info, analysis.series
     with (
-        open_source(analysis.source, replace(settings, allow_partial=True)) as recording,
+        open_source(analysis.source, settings) as recording,
         written_whole(outputs.overlay) as path,
     ):
         steps = np.diff(series.time_s)

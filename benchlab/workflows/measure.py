@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import cv2
 import numpy as np
 
 from benchlab.errors import InputError, UsageError
@@ -117,6 +118,9 @@ class _Seen:
 def _look(recording: Recording, settings: AnalyzeSettings, progress: Progress | None) -> _Seen:
     seen, info = _Seen(), recording.info
     finder: MarkerFinder | None = None
+    # The decoder keeps all cores busy; OpenCV's own threads would only wait for each other.
+    threads = cv2.getNumThreads()
+    cv2.setNumThreads(1)
     try:
         for frame in recording:
             planes = frame.planes
@@ -141,6 +145,8 @@ def _look(recording: Recording, settings: AnalyzeSettings, progress: Progress | 
         if len(seen.time_s) < 2:
             raise
         seen.interrupted = True
+    finally:
+        cv2.setNumThreads(threads)
     seen.threshold = finder.threshold if finder else None
     return seen
 
