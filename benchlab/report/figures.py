@@ -86,6 +86,7 @@ def draw_curvature_figure(series: CurvatureSeries, title: str, note: str = "") -
     pressure = (
         series.pressure_MPa if series.pressure_MPa is not None and np.isfinite(series.pressure_MPa).any() else None
     )
+    figure_class = _figure_class()
     groups = flag_groups(series, len(FLAG_STYLES))
     labels = ["bending angle θ", "± 2 standard deviations", *(label for label, _ in groups)]
     letters = max(map(len, labels)) * _LEGEND_LETTER + 0.5
