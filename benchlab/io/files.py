@@ -42,6 +42,13 @@ def sha256(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
+def cannot_write(error: OSError, path: Path) -> InputError:
+    """What the disk said, as one line about `path`."""
+    hint = "free some space; the old result is unchanged" if error.errno == errno.ENOSPC else None
+    reason = os.strerror(error.errno).lower() if error.errno else str(error)
+    return InputError(f"could not be written: {reason}", file=path, hint=hint)
+
+
 @contextmanager
 def written_whole(path: Path) -> Iterator[Path]:
     """A temporary name beside `path` to write to; on success it is flushed to disk and takes the place of `path`.
@@ -64,9 +71,7 @@ def written_whole(path: Path) -> Iterator[Path]:
         temporary.chmod(0o666 & ~umask)
         temporary.replace(path)
     except OSError as error:
-        hint = "free some space; the old result is unchanged" if error.errno == errno.ENOSPC else None
-        reason = os.strerror(error.errno).lower() if error.errno else str(error)
-        raise InputError(f"could not be written: {reason}", file=path, hint=hint) from error
+        raise cannot_write(error, path) from error
     finally:
         with suppress(OSError):
             temporary.unlink()

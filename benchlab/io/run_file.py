@@ -81,17 +81,14 @@ def read_run_file(path: Path) -> RunFile:
 
 
 def read_provenance(path: Path) -> dict[str, Any] | None:
-    """The provenance of a complete run file, read alone and quickly.
+    """The provenance of a run file, read alone and quickly; its key `partial` tells a run that was not finished.
 
-    None where there is no file, no run file of this schema, an unreadable one, or one of a run that was not finished.
+    None where there is no file, no run file of this schema, or an unreadable one.
     """
     try:
         with open_hdf5(path, KIND) as reader:
             _check_schema(reader)
-            if reader.file.attrs["partial"]:
-                return None
-            found: dict[str, Any] = _read_document(reader, "provenance")
-            return found
+            return {**_read_document(reader, "provenance"), "partial": bool(reader.file.attrs["partial"])}
     except BenchlabError:
         return None
 

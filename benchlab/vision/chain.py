@@ -15,12 +15,13 @@ from numpy.typing import NDArray
 
 from benchlab.vision.picture import FloatArray
 
-SPACING_TOLERANCE = 0.30  # of the logarithm of the ratio of two neighbouring spacings
-TURN_TOLERANCE = 0.5  # rad, change of the turning angle from link to link, and as a share of that angle
+SPACING_TOLERANCE = 0.35  # of the logarithm of the ratio of two neighbouring spacings
+TURN_TOLERANCE = 0.55  # rad, change of the turning angle from link to link, and as a share of that angle
 SIZE_TOLERANCE = 0.45  # of the logarithm of the ratio of areas
 COLOUR_TOLERANCE = 0.35  # rad of hue, and of the logarithm of the ratio of contrasts
 MAX_TURN = 2.2  # rad from one link to the next
 MAX_CONSIDERED = 40
+LEAST_SCORE, LEAST_ISOLATION, LEAST_ROUNDNESS = 0.3, 0.65, 0.6  # of a chain that is believed; the score a link
 STARTS = 150
 MAX_LOSS = -3.0  # the worst link that completes a chain of known length
 
@@ -49,6 +50,13 @@ def find_chain(candidates: NDArray[np.void], count: int | None = None) -> Chain 
         if (count is None or len(order) == count) and (best is None or score > best.score):
             best = Chain(tuple(int(shown[i]) for i in order), score)
     return best
+
+
+def is_convincing(chain: Chain, candidates: NDArray[np.void]) -> bool:
+    """Whether a chain is markers on its own evidence: links that earn their keep, round spots that stand out evenly."""
+    members = candidates[list(chain.order)]
+    plain = np.median(members["isolation"]) >= LEAST_ISOLATION and np.median(members["roundness"]) >= LEAST_ROUNDNESS
+    return bool(plain and chain.score >= LEAST_SCORE * (len(chain.order) - 2))
 
 
 def _likeness(candidates: NDArray[np.void]) -> FloatArray:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from benchlab.vision.chain import Chain, find_chain
+from benchlab.vision.chain import Chain, find_chain, is_convincing
 from benchlab.vision.picture import FloatArray
 
 SAMPLED_FRAMES = 32
@@ -74,9 +74,9 @@ def _reference(frames: Sequence[NDArray[np.void] | None], count: int | None) -> 
     if not usable:
         return None
     picked = [usable[i] for i in np.unique(np.linspace(0, len(usable) - 1, SAMPLED_FRAMES).astype(int))]
-    found = [(t, chain) for t, c in picked if (chain := find_chain(c, count))]
+    found = [(t, chain) for t, c in picked if (chain := find_chain(c, count)) and is_convincing(chain, c)]
     if not found:
-        found = [(t, chain) for t, c in usable if (chain := find_chain(c, count))]
+        found = [(t, chain) for t, c in usable if (chain := find_chain(c, count)) and is_convincing(chain, c)]
     if not found:
         return None
     sizes = [len(chain.order) for _, chain in found]

@@ -37,6 +37,8 @@ MAX_RADIUS = 60.0  # chroma samples; anything wider is no marker
 # Radii, as (factor of the spot's, samples more): the spot with its blurred edge lies inside INNER, its surround between.
 INNER, OUTER = (1.25, 1.5), (1.6, 2.5)
 CORE = 0.5
+LEAST_CONTRAST = 10.0  # chroma levels above the surround: less is not told from noise, texture and compression
+HUE_REACH = 0.7  # rad between a spot's hue and the colour looked for: skin and wood are out, a warm lamp is not
 
 
 @dataclass(frozen=True)
@@ -82,7 +84,8 @@ def find_candidates(
     column, row = np.rint(in_chroma.xy).astype(int).T
     row, column = np.clip(row, 0, score.shape[0] - 1), np.clip(column, 0, score.shape[1] - 1)
     found["hue_rad"] = np.arctan2(planes.cr[row, column] - 128.0, planes.cb[row, column] - 128.0)
-    return found
+    hue_off = np.abs(np.angle(np.exp(1j * (found["hue_rad"] - colour.hue_rad))))
+    return found[(found["contrast"] >= LEAST_CONTRAST) & (hue_off <= HUE_REACH)]
 
 
 def _spots(score: UInt8Array, threshold: float, region: Region | None) -> tuple[FloatArray, FloatArray]:

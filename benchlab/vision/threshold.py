@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from benchlab.vision.chain import find_chain
+from benchlab.vision.chain import find_chain, is_convincing
 from benchlab.vision.colour import MarkerColour, colour_plane
-from benchlab.vision.markers import Region, find_candidates
+from benchlab.vision.markers import LEAST_CONTRAST, Region, find_candidates
 from benchlab.vision.picture import FloatArray, Planes, UInt8Array
 
 LEVELS_TRIED = 9
-LEAST_CONTRAST = 8.0  # levels above the background; less is not told from noise and compression
 
 
 def find_threshold(
@@ -28,7 +27,7 @@ def find_threshold(
     for level in _levels(score):
         candidates = find_candidates(planes, colour, level, region)
         chain = find_chain(candidates, count)
-        if chain and (best is None or chain.score > best[0]):
+        if chain and is_convincing(chain, candidates) and (best is None or chain.score > best[0]):
             members = candidates[list(chain.order)]
             best = chain.score, float(np.min(members["level"] - members["contrast"] / 2))
     return best[1] if best else None

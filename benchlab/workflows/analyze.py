@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from benchlab.io.files import sha256, written_whole
+from benchlab.io.files import check_regular_file, sha256
 from benchlab.io.run_file import write_run_file
 from benchlab.io.table import write_series_csv
 from benchlab.workflows.measure import Analysis, Progress, measure, open_source
@@ -26,6 +26,8 @@ def analyze(
     written and marked partial.
     """
     settings.check()
+    if not source.is_dir():
+        check_regular_file(source)
     outputs.check(settings.overlay)
     with outputs.locked():
         current = outputs.current(source, asdict(settings))
@@ -36,35 +38,32 @@ def analyze(
 
 
 def save(analysis: Analysis, settings: AnalyzeSettings, outputs: Outputs) -> dict[str, Any]:
-    """Write table, figure, overlay and, last, the run file that vouches for them; returns the summary."""
+    """Write table, figure, overlay and the run file that vouches for them, all or none; returns the summary."""
     from benchlab.report.figures import draw_curvature_figure, save_png
 
     series, chosen = analysis.series, asdict(settings)
     summary = summarise(analysis, outputs, settings.overlay)
-    write_series_csv(outputs.table, series)
-    note = f"{analysis.scale.source}; fit: {settings.fit}" + ("; PARTIAL" if analysis.partial else "")
-    figure = draw_curvature_figure(series, analysis.source.name, note)
-    with written_whole(outputs.figure) as temporary:
-        save_png(figure, temporary)
-    if settings.overlay:
-        _write_overlay(analysis, settings, outputs)
-    made = provenance(analysis.source, chosen)
-    written = [p for p in outputs.paths(settings.overlay) if p != outputs.run_file]
-    write_run_file(
-        outputs.run_file,
-        series,
-        settings=chosen,
-        provenance={
-            **made,
-            "partial": analysis.partial,
-            "outputs_sha256": {p.name: sha256(p) for p in written},
-            "summary": summary,
-        },
-        recording={**_plain(vars(analysis.info)), "frames": len(series.time_s)},
-        scale=_plain(vars(analysis.scale)),
-        warnings=list(analysis.warnings),
-        partial=analysis.partial,
-    )
+    with outputs.staged() as stage:
+        write_series_csv(stage.table, series)
+        note = f"{analysis.scale.source}; {settings.fit} fit" + ("; PARTIAL, interrupted" if analysis.partial else "")
+        save_png(draw_curvature_figure(series, analysis.source.name, note), stage.figure)
+        if settings.overlay:
+            _write_overlay(analysis, settings, stage.overlay)
+        written = [p for p in stage.paths(settings.overlay) if p != stage.run_file]
+        write_run_file(
+            stage.run_file,
+            series,
+            settings=chosen,
+            provenance={
+                **provenance(analysis.source, chosen),
+                "outputs_sha256": {p.name: sha256(p) for p in written},
+                "summary": summary,
+            },
+            recording={**_plain(vars(analysis.info)), "frames": len(series.time_s)},
+            scale=_plain(vars(analysis.scale)),
+            warnings=list(analysis.warnings),
+            partial=analysis.partial,
+        )
     return summary
 
 
@@ -92,17 +91,14 @@ def summarise(analysis: Analysis, outputs: Outputs, overlay: bool) -> dict[str, 
     }
 
 
-def _write_overlay(analysis: Analysis, settings: AnalyzeSettings, outputs: Outputs) -> None:
+def _write_overlay(analysis: Analysis, settings: AnalyzeSettings, path: Path) -> None:
     """A second pass over the recording, with what was found drawn in."""
     from benchlab.io.planes import display_bgr
     from benchlab.io.video_writer import VideoWriter
     from benchlab.report.overlay import draw_overlay
 
     info, series = analysis.info, analysis.series
-    with (
-        open_source(analysis.source, settings) as recording,
-        written_whole(outputs.overlay) as path,
-    ):
+    with open_source(analysis.source, settings) as recording:
         steps = np.diff(series.time_s)
         rate = 1 / np.median(steps) if np.isfinite(steps).any() else 2.0
         even = (info.width // 2 * 2, info.height // 2 * 2)

@@ -36,6 +36,7 @@ from benchlab.workflows.settings import AnalyzeSettings
 
 Progress = Callable[[int, int | None], None]
 ARUCO_TRIES = 60  # pictures
+OTHER_LENGTH = 0.2  # relative difference between the marked length and al that is asked about
 
 
 @dataclass(frozen=True)
@@ -133,7 +134,8 @@ def _look(recording: Recording, settings: AnalyzeSettings, progress: Progress | 
                 if settings.aruco_mm is not None and seen.aruco_px is None:
                     _look_for_aruco(seen, planes, settings.aruco_dictionary)
                 seen.candidates.append(finder.find(planes))
-                seen.steadiness.look(planes.luma, frame.time_s)
+                if info.kind == "video":
+                    seen.steadiness.look(planes.luma, frame.time_s)
             else:
                 seen.candidates.append(None)
             seen.time_s.append(frame.time_s)
@@ -217,14 +219,14 @@ def _with_pressure(
     if not np.isfinite(series.time_s).any():
         raise UsageError("stills have no time to look the pressure up by", hint="give --fps")
     if settings.sync is not None:
-        offset = settings.sync
+        start = settings.sync
     elif isinstance(record, Ramp):
-        offset = find_onset(series.time_s, series.angle_rad)
+        start = find_onset(series.time_s, series.angle_rad)
     elif settings.sync_onset:
-        offset = find_onset(series.time_s, series.angle_rad) - find_onset(record.time_s, record.pressure_MPa)
+        start = find_onset(series.time_s, series.angle_rad) - find_onset(record.time_s, record.pressure_MPa)
     else:
-        offset = 0.0
-    return replace(series, pressure_MPa=record.at(series.time_s, offset))
+        start = 0.0
+    return replace(series, pressure_MPa=record.at(series.time_s, -start))
 
 
 def _nothing_found(source: Path, settings: AnalyzeSettings, seen: _Seen) -> InputError:
@@ -241,6 +243,13 @@ def _doubts(series: CurvatureSeries, scale: Scale, settings: AnalyzeSettings, tr
     """What the user should know before using the numbers, one plain sentence each."""
     doubts = []
     frames = len(series.time_s)
+    chords = np.hypot(*np.moveaxis(np.diff(series.markers_px, axis=1), -1, 0)).sum(axis=1)
+    chords = chords[np.isfinite(chords)]
+    marked = float(np.median(chords)) * scale.mm_per_px if len(chords) else settings.length_mm
+    if not scale.assumed and settings.marker_span_mm is None and abs(marked / settings.length_mm - 1) > OTHER_LENGTH:
+        doubts.append(
+            f"the markers span {marked:.0f} mm, the angle is for {settings.length_mm:g} mm: is that the length (--length-mm)?"
+        )
     if scale.assumed:
         doubts.append(f"no scale given: the markers are assumed to span {settings.length_mm:g} mm (--length-mm)")
     if scale.span_variation > 0.03:

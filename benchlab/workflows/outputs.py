@@ -8,9 +8,10 @@ import os
 import platform
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from hashlib import sha256 as new_sha256
 from pathlib import Path
@@ -18,7 +19,7 @@ from typing import Any
 
 import benchlab
 from benchlab.errors import UsageError
-from benchlab.io.files import check_regular_file, sha256
+from benchlab.io.files import cannot_write, check_regular_file, sha256
 from benchlab.io.run_file import read_provenance
 
 
@@ -106,6 +107,21 @@ class Outputs:
             if not path.is_file() or sha256(path) != digest:
                 return None
         return {**provenance["summary"], "status": "current"}
+
+    @contextmanager
+    def staged(self) -> Iterator[Outputs]:
+        """The same files in a hidden folder beside their place; they are moved there together when the block ends well.
+
+        Raises InputError where the disk refuses; then nothing in the folder has changed.
+        """
+        try:
+            with tempfile.TemporaryDirectory(dir=self.folder, prefix=f".{self.stem[:40]}-") as hidden:
+                stage = replace(self, folder=Path(hidden))
+                yield stage
+                for path in sorted(Path(hidden).iterdir(), key=lambda p: p == stage.run_file):
+                    path.replace(self.folder / path.name)
+        except OSError as error:
+            raise cannot_write(error, self.folder) from error
 
     @contextmanager
     def locked(self) -> Iterator[None]:

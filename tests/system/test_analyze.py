@@ -108,7 +108,7 @@ def test_a_pressure_file_is_looked_up_and_shifted(benchlab, drawn_clip, tmp_path
 
 
 def test_stills_are_one_recording_in_natural_order(benchlab, tmp_path) -> None:
-    film = draw_clip(tmp_path / "film.mp4", np.array([0.0, 30, 60, 90]))
+    film = draw_clip(tmp_path / "film.mp4", np.array([0.0, 30, 60, 90]), exposure_fraction=0.0)
     stills = tmp_path / "stills"
     stills.mkdir()
     video, i = cv2.VideoCapture(str(film)), 0

@@ -45,7 +45,7 @@ def test_random_clutter_of_the_same_look_does_not_join(seed: int) -> None:
 
 
 def test_other_sizes_and_colours_are_not_taken() -> None:
-    row, beside = arc(40, 6), (*arc(40, 6), 75, 60)
+    row, beside = arc(40, 6), np.add(arc(40, 6), (75, 60))
     mixed = np.concatenate([spots(row), spots(beside, area=900.0), spots(beside + 40, hue=0.2)])
     chain = find_chain(mixed)
     assert chain is not None
