@@ -28,7 +28,12 @@ class BenchlabError(Exception):
     exit_code = 1
 
     def __init__(
-        self, what: str, *, file: str | os.PathLike[str] | None = None, where: str | None = None, hint: str | None = None
+        self,
+        what: str,
+        *,
+        file: str | os.PathLike[str] | None = None,
+        where: str | None = None,
+        hint: str | None = None,
     ) -> None:
         self.what = what
         self.file = None if file is None else os.fspath(file)

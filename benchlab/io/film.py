@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
@@ -28,6 +29,8 @@ from benchlab.io.orientation import frame_orientation
 from benchlab.io.planes import PlaneReader, read_tags
 from benchlab.io.recording_base import Recording, RecordingInfo, displayed_size
 from benchlab.vision.picture import Frame
+
+THREADS_PER_CORE, MOST_THREADS = 3, 16
 
 REORDERING = frozenset({"h264", "hevc"})  # AVI has stamps of decoding only; for these they are no presentation times
 _Start = tuple[list[tuple[int | None, None]], tuple[int | None, VideoFrame]]
@@ -102,6 +105,9 @@ class Film(Recording):
         check_size(self._path, *size, self._max_pixels)
         # Frame threads conceal damage differently from run to run; slice threads give the same pixels each time.
         context.thread_type = "SLICE" if self._allow_partial else "AUTO"
+        if not self._allow_partial:
+            # FFmpeg's own choice, one more than there are cores, lets them idle while the caller looks at a frame.
+            context.thread_count = min(THREADS_PER_CORE * (os.cpu_count() or 1), MOST_THREADS)
         context.options = decoder_limit(self._max_pixels) | ({"skip_loop_filter": "all"} if self._fast else {})
         self._video = stream
         return Decoder(self._container, stream, self._path)

@@ -86,7 +86,9 @@ def _starts(xy: FloatArray, likeness: FloatArray) -> list[tuple[int, int, int]]:
     good = (i != j) & (j != k) & (i < k) & (cost < 2) & (np.abs(turn) < MAX_TURN)
     index = np.flatnonzero(good)
     # A chain that skips every second marker is as even as the true one: prefer the shorter links.
-    rank = cost.ravel()[index] + 0.5 * np.log(length[i.ravel()[index], j.ravel()[index]] / length[good.any(2)].min(initial=1e9))
+    rank = cost.ravel()[index] + 0.5 * np.log(
+        length[i.ravel()[index], j.ravel()[index]] / length[good.any(2)].min(initial=1e9)
+    )
     index = index[np.argsort(rank, kind="stable")[:STARTS]]
     return [(int(a), int(b), int(c)) for a, b, c in zip(*np.unravel_index(index, (n, n, n)))]
 

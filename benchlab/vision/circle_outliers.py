@@ -20,8 +20,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
-from scipy.stats import chi2
-from scipy.stats import f as f_distribution
+from scipy.special import chdtrc, chdtri, fdtrc
 
 from benchlab.vision.picture import FloatArray
 
@@ -43,7 +42,7 @@ def usual_scatter(squares: FloatArray, dof: NDArray[np.int64]) -> tuple[FloatArr
     rows = np.flatnonzero(np.isfinite(squares) & (dof > 0))
     if rows.size:
         around = min(FRAMES_AROUND, rows.size)
-        variance = squares[rows] / chi2.median(dof[rows])
+        variance = squares[rows] / chdtri(dof[rows], 0.5)
         scatter[rows] = np.sqrt(median_filter(variance, size=around, mode="nearest"))
         # the median of n values is about as good as the mean of n/2
         weight[rows] = dof[rows] * max(around / 2, 1)
@@ -81,10 +80,10 @@ def is_outlier(
     gain = all_squares - rest_squares
     within = gain / np.maximum(rest_squares / (n - 4), np.maximum(noise**2, floor))
     against = gain / np.maximum(reference**2, floor)
-    alone = np.where(n >= FEWEST_POINTS_WITHIN_A_FRAME, f_distribution.sf(within, 1, n - 4), 1.0)
+    alone = np.where(n >= FEWEST_POINTS_WITHIN_A_FRAME, fdtrc(1, n - 4, within), 1.0)
     chance = np.minimum(alone, _upper_tail(against, reference_dof))
     return (within >= DECISIVE) & (n * chance < CHANCE)
 
 
 def _upper_tail(ratio: FloatArray, dof: FloatArray) -> FloatArray:
-    return np.where(np.isinf(dof), chi2.sf(ratio, 1), f_distribution.sf(ratio, 1, np.where(np.isinf(dof), 1, dof)))
+    return np.where(np.isinf(dof), chdtrc(1, ratio), fdtrc(1, np.where(np.isinf(dof), 1, dof), ratio))

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
+from scipy.special import stdtrit
 
 from benchlab.vision.circle import CircleFits, fit_circles_robustly
 from benchlab.vision.linking import Tracks
@@ -115,7 +115,7 @@ def _pooled_noise(fits: CircleFits, jitter: float, stills: bool) -> tuple[FloatA
     alone = total < 0.5
     scatter = np.sqrt(pooled / np.where(alone, 1, total))
     noise = np.where(alone, jitter, scatter)
-    student = np.where(alone, 1.0, stats.t.ppf(0.97725, np.maximum(total, 1)) / 2)
+    student = np.where(alone, 1.0, stdtrit(np.maximum(total, 1), 0.97725) / 2)
     return noise, student
 
 

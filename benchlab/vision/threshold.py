@@ -6,8 +6,9 @@ import numpy as np
 
 from benchlab.vision.chain import find_chain, is_convincing
 from benchlab.vision.colour import MarkerColour, colour_plane
-from benchlab.vision.markers import LEAST_CONTRAST, Region, find_candidates
+from benchlab.vision.markers import LEAST_CONTRAST, find_candidates
 from benchlab.vision.picture import FloatArray, Planes, UInt8Array
+from benchlab.vision.spots import Region
 
 LEVELS_TRIED = 9
 
@@ -22,7 +23,7 @@ def find_threshold(
     """
     score = colour_plane(planes, colour)
     if region:
-        score = score[region.top : region.bottom, region.left : region.right]
+        score = score[region.samples(planes)]
     best = None
     for level in _levels(score):
         candidates = find_candidates(planes, colour, level, region)

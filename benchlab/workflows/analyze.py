@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from benchlab.errors import BenchlabError
 from benchlab.io.files import check_regular_file, sha256
 from benchlab.io.run_file import write_run_file
 from benchlab.io.table import write_series_csv
@@ -33,7 +34,11 @@ def analyze(
         current = outputs.current(source, asdict(settings))
         if current is not None:
             return current
-        analysis = measure(source, settings, progress)
+        try:
+            analysis = measure(source, settings, progress)
+        except BenchlabError as error:
+            error.file = error.file or str(source)
+            raise
         return save(analysis, settings, outputs)
 
 

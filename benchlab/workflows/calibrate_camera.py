@@ -64,7 +64,9 @@ def calibrate_camera(
 def _board(corners: str) -> tuple[int, int]:
     match = re.fullmatch(r"(\d+)\s*[xX×,]\s*(\d+)", corners.strip())
     if not match:
-        raise UsageError(f"--corners {corners!r} is not COLUMNSxROWS", hint="count the inner corners of the board, as 9x6")
+        raise UsageError(
+            f"--corners {corners!r} is not COLUMNSxROWS", hint="count the inner corners of the board, as 9x6"
+        )
     return int(match[1]), int(match[2])
 
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from benchlab.errors import InputError, UsageError
 from benchlab.io.lens_file import read_lens
@@ -21,7 +20,6 @@ from benchlab.vision.curvature import Body, measure_curvature
 from benchlab.vision.finder import MarkerFinder
 from benchlab.vision.lens import Lens
 from benchlab.vision.linking import Tracks, link
-from benchlab.vision.markers import Region
 from benchlab.vision.onset import find_onset
 from benchlab.vision.picture import FloatArray, Planes
 from benchlab.vision.scale import (
@@ -31,12 +29,13 @@ from benchlab.vision.scale import (
     scale_given,
 )
 from benchlab.vision.series import CurvatureSeries
-from benchlab.vision.steadiness import Steadiness, find_shakes
+from benchlab.vision.spots import Region
+from benchlab.vision.steadiness import Steadiness
+from benchlab.workflows.doubts import doubts, nothing_found
 from benchlab.workflows.settings import AnalyzeSettings
 
 Progress = Callable[[int, int | None], None]
 ARUCO_TRIES = 60  # pictures
-OTHER_LENGTH = 0.2  # relative difference between the marked length and al that is asked about
 
 
 @dataclass(frozen=True)
@@ -62,22 +61,21 @@ def measure(source: Path, settings: AnalyzeSettings, progress: Progress | None =
         warnings = [*recording.warnings, *seen.steadiness.warnings()]
     if lens:
         lens = lens.for_size(info.width, info.height)
-    tracks = _in_picture(link(seen.candidates, settings.markers, stills=info.kind == "stills"), info, lens)
-    for t, reason in enumerate(seen.reasons):
-        if reason:
-            tracks = replace(tracks, reason=(*tracks.reason[:t], reason, *tracks.reason[t + 1 :]))
+    candidates = seen.candidates
+    tracks = _in_picture(link(candidates, settings.markers, stills=info.kind == "stills"), info, lens)
+    tracks = replace(tracks, reason=tuple(mine or theirs for mine, theirs in zip(seen.reasons, tracks.reason)))
     body = Body(settings.length_mm, settings.marker_span_mm, _known_scale(settings, seen, info, lens))
     time_s = np.array(seen.time_s)
     names = tuple(seen.names) if info.kind == "stills" else ()
     if tracks.xy.shape[1] == 0 or not (np.isfinite(tracks.xy[..., 0]).sum(axis=1) >= 3).any():
-        raise _nothing_found(source, settings, seen)
+        raise nothing_found(source, settings.colour, [len(c) for c in candidates if c is not None])
     series, scale = measure_curvature(
         tracks, time_s, body, settings.fit, settings.flip, stills=info.kind == "stills", names=names
     )
     series = _with_pressure(series, pressure or ramp, settings)
     if pressure is not None:
         warnings += pressure.warnings
-    warnings += _doubts(series, scale, settings, tracks)
+    warnings += doubts(series, scale, settings)
     missing = 1 - series.measured.mean()
     if missing > settings.max_missing:
         raise InputError(
@@ -102,77 +100,72 @@ def open_source(source: Path, settings: AnalyzeSettings) -> Recording:
 
 
 class _Seen:
-    """What one pass over a recording leaves: candidates, times and reasons a frame, and the first good picture."""
+    """What one pass over a recording leaves: times, reasons and names of its frames, and what was found in them."""
 
-    def __init__(self) -> None:
-        self.candidates: list[Any] = []
+    def __init__(self, finder: MarkerFinder) -> None:
+        self.finder = finder
+        self.steadiness = Steadiness()
         self.time_s: list[float] = []
         self.reasons: list[str] = []
         self.names: list[str] = []
         self.aruco_px: FloatArray | None = None
         self.aruco_missed: InputError | None = None
-        self.steadiness = Steadiness()
-        self.threshold: float | None = None
         self.interrupted = False
+
+    @property
+    def candidates(self) -> list[NDArray[np.void] | None]:
+        """Of the frames that were looked at to the end, should Ctrl-C have come in the middle of one."""
+        return self.finder.candidates()[: len(self.names)]
 
 
 def _look(recording: Recording, settings: AnalyzeSettings, progress: Progress | None) -> _Seen:
-    seen, info = _Seen(), recording.info
-    finder: MarkerFinder | None = None
+    info = recording.info
+    stills = info.kind == "stills"
+    region = _region(settings.roi_px, info)
+    seen = _Seen(MarkerFinder(settings.colour, settings.threshold, region, settings.markers, each=stills))
     # The decoder keeps all cores busy; OpenCV's own threads would only wait for each other.
     threads = cv2.getNumThreads()
     cv2.setNumThreads(1)
     try:
         for frame in recording:
             planes = frame.planes
-            if planes is not None:
-                if finder is None:
-                    region = _region(settings.roi_px, info, planes)
-                    finder = MarkerFinder(
-                        settings.colour, settings.threshold, region, settings.markers, each=info.kind == "stills"
-                    )
-                if settings.aruco_mm is not None and seen.aruco_px is None:
-                    _look_for_aruco(seen, planes, settings.aruco_dictionary)
-                seen.candidates.append(finder.find(planes))
-                if info.kind == "video":
-                    seen.steadiness.look(planes.luma, frame.time_s)
+            if planes is None:
+                seen.finder.pass_over()
             else:
-                seen.candidates.append(None)
+                seen.finder.look(planes)
+                if settings.aruco_mm is not None and seen.aruco_px is None and frame.index < ARUCO_TRIES:
+                    _look_for_aruco(seen, planes, settings.aruco_dictionary)
+                if not stills:
+                    seen.steadiness.look(planes.luma, frame.time_s)
             seen.time_s.append(frame.time_s)
             seen.reasons.append(frame.reason)
             seen.names.append(frame.name)
             if progress:
-                progress(len(seen.time_s), info.frame_count)
+                progress(len(seen.names), info.frame_count)
     except KeyboardInterrupt:
-        if len(seen.time_s) < 2:
+        if len(seen.names) < 2:
             raise
         seen.interrupted = True
     finally:
         cv2.setNumThreads(threads)
-    seen.threshold = finder.threshold if finder else None
+    del seen.time_s[len(seen.names) :], seen.reasons[len(seen.names) :]
     return seen
 
 
-def _region(roi: tuple[float, float, float, float] | None, info: RecordingInfo, planes: Planes) -> Region | None:
-    """The chroma samples of a region of interest given in displayed pixels."""
+def _region(roi: tuple[float, float, float, float] | None, info: RecordingInfo) -> Region | None:
+    """A region of interest given in displayed pixels, in pixels as stored."""
     if roi is None:
         return None
     left, top, width, height = roi
-    if not (
-        width > 0 and height > 0 and 0 <= left < left + width <= info.width and 0 <= top < top + height <= info.height
-    ):
+    across, down = 0 <= left < left + width <= info.width, 0 <= top < top + height <= info.height
+    if not (across and down):
         raise UsageError(
             f"--roi {left:g},{top:g},{width:g},{height:g} does not lie in the picture",
             file=info.path,
             hint=f"give LEFT,TOP,WIDTH,HEIGHT inside {info.width}x{info.height} pixels",
         )
     corners = info.from_display(np.array([[left, top], [left + width - 1, top + height - 1]]))
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    step, offset = np.array(planes.chroma_step), np.array(planes.chroma_offset)
-    first = np.clip(np.floor((low - offset) / step), 0, None).astype(int)
-    last = np.ceil((high - offset) / step).astype(int) + 1
-    rows, columns = planes.cb.shape
-    return Region(int(first[0]), int(first[1]), int(min(last[0], columns)), int(min(last[1], rows)))
+    return Region(*corners.min(axis=0), *corners.max(axis=0))
 
 
 def _in_picture(tracks: Tracks, info: RecordingInfo, lens: Lens | None) -> Tracks:
@@ -182,12 +175,11 @@ def _in_picture(tracks: Tracks, info: RecordingInfo, lens: Lens | None) -> Track
 
 
 def _look_for_aruco(seen: _Seen, planes: Planes, dictionary: str) -> None:
-    """Corners of the ArUco markers in this picture; the first pictures are tried until one shows them."""
-    if len(seen.candidates) < ARUCO_TRIES:
-        try:
-            _, seen.aruco_px = find_aruco(planes.luma, dictionary)
-        except InputError as error:
-            seen.aruco_missed = error
+    """Corners of the ArUco markers in this picture, if it shows any."""
+    try:
+        _, seen.aruco_px = find_aruco(planes.luma, dictionary)
+    except InputError as error:
+        seen.aruco_missed = error
 
 
 def _known_scale(settings: AnalyzeSettings, seen: _Seen, info: RecordingInfo, lens: Lens | None) -> Scale | None:
@@ -227,59 +219,3 @@ def _with_pressure(
     else:
         start = 0.0
     return replace(series, pressure_MPa=record.at(series.time_s, -start))
-
-
-def _nothing_found(source: Path, settings: AnalyzeSettings, seen: _Seen) -> InputError:
-    spots = [len(c) for c in seen.candidates if c is not None]
-    most = max(spots, default=0)
-    if most == 0:
-        what = f"no actuator found in any of {len(seen.candidates)} frames: nothing {settings.colour} stands out"
-    else:
-        what = f"no actuator found in any of {len(seen.candidates)} frames: at most {most} {settings.colour} spots, in no row of markers"
-    return InputError(what, file=source, hint="check --colour, or set --threshold, --markers or --roi")
-
-
-def _doubts(series: CurvatureSeries, scale: Scale, settings: AnalyzeSettings, tracks: Tracks) -> list[str]:
-    """What the user should know before using the numbers, one plain sentence each."""
-    doubts = []
-    frames = len(series.time_s)
-    chords = np.hypot(*np.moveaxis(np.diff(series.markers_px, axis=1), -1, 0)).sum(axis=1)
-    chords = chords[np.isfinite(chords)]
-    marked = float(np.median(chords)) * scale.mm_per_px if len(chords) else settings.length_mm
-    if not scale.assumed and settings.marker_span_mm is None and abs(marked / settings.length_mm - 1) > OTHER_LENGTH:
-        doubts.append(
-            f"the markers span {marked:.0f} mm, the angle is for {settings.length_mm:g} mm: is that the length (--length-mm)?"
-        )
-    if scale.assumed:
-        doubts.append(f"no scale given: the markers are assumed to span {settings.length_mm:g} mm (--length-mm)")
-    if scale.span_variation > 0.03:
-        doubts.append(
-            f"the marked length varies by {scale.span_variation:.0%}: the body stretches or leaves the picture plane"
-        )
-    if frames == 1:
-        doubts.append("1 frame: no curvature against time")
-    missing = int((~series.measured).sum())
-    if missing:
-        doubts.append(f"{missing} of {frames} frames could not be measured")
-    short = int((series.measured & (series.n_markers < tracks.xy.shape[1])).sum())
-    if short:
-        doubts.append(f"markers left out in {short} of {frames} frames")
-    odd = sum("not constant curvature" in f for f in series.flag)
-    if odd:
-        doubts.append(f"not of constant curvature in {odd} of {frames} frames (see fit_rms_px)")
-    degrees = np.degrees(series.angle_rad[series.measured])
-    if len(degrees) and degrees.min() < -10 and degrees.max() > 10:
-        doubts.append(
-            "bends both ways: angles are positive towards the side of the largest angle (--flip turns that round)"
-        )
-    shakes = find_shakes(tracks, series.time_s)
-    if len(shakes) and not series.names:
-        doubts.append(
-            f"all markers jerk together in {len(shakes)} frames, first at {shakes[0]:.2f} s: was the camera knocked?"
-        )
-    if series.pressure_MPa is not None and not np.isfinite(series.pressure_MPa).all():
-        outside = int((~np.isfinite(series.pressure_MPa)).sum())
-        doubts.append(f"the pressure record does not cover {outside} of {frames} frames")
-    if not math.isfinite(scale.mm_per_px):
-        doubts.append("no frame shows both end markers")
-    return doubts

@@ -80,7 +80,7 @@ def make_sample_data(out: Path, seed: int = 1, progress: Progress | None = None)
         rng = np.random.default_rng([seed, index])
         write_clip(out / clip.file, clip, rng, _shifted(progress, index * FRAMES, len(clips) * FRAMES))
         written.append(out / clip.file)
-    tables = {"truth.csv": truth_rows(clips), "truth_series.csv": series_rows(clips)}
+    tables = {"truth.csv": truth_rows(clips), "truth_series.csv": series_rows(clips), "pressure_log.csv": log_rows()}
     for name, rows in tables.items():
         _write_csv(out / name, rows)
     with written_whole(out / "README.md") as temporary:
@@ -166,6 +166,12 @@ def series_rows(clips: Iterable[SampleClip]) -> list[dict[str, object]]:
         for clip in clips
         for t, p, angle in zip(times, ramp(times), np.rad2deg(clip.angles_rad()), strict=True)
     ]
+
+
+def log_rows() -> list[dict[str, object]]:
+    """Rows of pressure_log.csv: the pressure of all clips at 100 Hz, as a bench would have logged it."""
+    times = np.arange(round(100 * FRAMES / FPS) + 1) / 100
+    return [{"time_s": f"{t:.2f}", "pressure_kPa": f"{1000 * p:.2f}"} for t, p in zip(times, ramp(times), strict=True)]
 
 
 def _scene(rng: np.random.Generator, length_px: float, index: int) -> Scene:

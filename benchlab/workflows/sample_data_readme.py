@@ -39,6 +39,8 @@ its ends.
   marker to last), `scale_mm_per_px`, `pressure_MPa`, and `angle_deg`, the true bending angle at that pressure. Angles
   are positive whichever way the body bends.
 - `truth_series.csv`, one row per frame: `file`, `time_s`, `pressure_MPa`, `angle_deg`, in the middle of the exposure.
+- `pressure_log.csv`, the same pressure at 100 Hz as a bench would log it, for `benchlab analyze --pressure`: `time_s`,
+  `pressure_kPa`. Drawn too.
 
 The same seed draws the same pictures; the files are the same bytes only with the same version of the encoder.
 """

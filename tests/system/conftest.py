@@ -21,7 +21,9 @@ ANGLES_DEG = np.concatenate([np.zeros(5), np.linspace(0, 100, 35)])
 FPS = 30.0
 
 
-def draw_clip(path: Path, angles_deg: np.ndarray = ANGLES_DEG, scene: Scene = SMALL, fps: float = FPS, **changes: Any) -> Path:
+def draw_clip(
+    path: Path, angles_deg: np.ndarray = ANGLES_DEG, scene: Scene = SMALL, fps: float = FPS, **changes: Any
+) -> Path:
     """A small film of a known actuator; its length_px is 300 px."""
     scene = replace(scene, **changes)
     with VideoWriter(path, scene.width, scene.height, fps=fps, crf=16, preset="veryfast", full_range=scene.full_range,

@@ -57,7 +57,9 @@ def test_a_clip_becomes_a_table_a_run_file_and_a_picture(benchlab, drawn_clip, t
 
 def test_every_fit_and_given_scale_agree(benchlab, drawn_clip, tmp_path) -> None:
     for fit in ("kasa", "pratt", "taubin", "hyper", "geometric"):
-        done = benchlab("analyze", drawn_clip, "--out", tmp_path / fit, "--fit", fit, "--scale-mm-per-px", "0.6", "--json")
+        done = benchlab(
+            "analyze", drawn_clip, "--out", tmp_path / fit, "--fit", fit, "--scale-mm-per-px", "0.6", "--json"
+        )
         (video,) = done.json["videos"]
         assert video["max_angle_deg"] == pytest.approx(100, abs=0.4), fit
         assert video["scale_mm_per_px"] == 0.6
@@ -240,4 +242,3 @@ def test_who_holds_the_lock_is_named_and_a_dead_holder_is_not_waited_for(benchla
 def test_strict_turns_warnings_into_a_refusal(benchlab, drawn_clip, tmp_path) -> None:
     assert benchlab("analyze", drawn_clip, "--out", tmp_path, "--strict").code == 3
     assert benchlab("analyze", drawn_clip, "--out", tmp_path, "--strict", "--marker-span-mm", "180").code == 0
-

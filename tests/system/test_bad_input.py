@@ -240,7 +240,9 @@ def test_a_full_disk_leaves_the_old_result(drawn_clip, tmp_path) -> None:
     before = {p.name: p.read_bytes() for p in tmp_path.iterdir()}
     limited = "import resource,runpy,sys\nresource.setrlimit(resource.RLIMIT_FSIZE,(2000,2000))\nimport signal\n" \
               "signal.signal(signal.SIGXFSZ,signal.SIG_IGN)\nsys.argv=sys.argv[1:]\nrunpy.run_module('benchlab',run_name='__main__')"  # fmt: skip
-    done = subprocess.run([sys.executable, "-c", limited, *command[2:], "--fit", "pratt"], capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [sys.executable, "-c", limited, *command[2:], "--fit", "pratt"], capture_output=True, text=True, check=False
+    )
     assert done.returncode == 3 and "could not be written" in done.stderr, done.stderr
     assert {p.name: p.read_bytes() for p in tmp_path.iterdir()} == before
 
@@ -263,7 +265,10 @@ def test_odd_surroundings(drawn_clip, tmp_path, environment) -> None:
                           env={**os.environ, **environment})  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert b"\x1b[" not in done.stderr and b"Traceback" not in done.stderr
-    assert "," in path.with_suffix(".csv").read_text().splitlines()[1] and pd.read_csv(path.with_suffix(".csv"))["angle_deg"].max() > 99
+    assert (
+        "," in path.with_suffix(".csv").read_text().splitlines()[1]
+        and pd.read_csv(path.with_suffix(".csv"))["angle_deg"].max() > 99
+    )
 
 
 def test_a_bug_says_that_it_is_one(benchlab, drawn_clip, tmp_path, monkeypatch) -> None:

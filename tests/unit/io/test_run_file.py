@@ -321,13 +321,13 @@ def test_content_that_is_not_what_a_run_file_holds(run, wrong):
     assert "no dataset" in line or "not numbers of shape (50,)" in line or "not texts" in line
 
 
-def test_provenance_is_read_alone_and_only_from_finished_runs(tmp_path):
+def test_provenance_is_read_alone_and_tells_an_unfinished_run(tmp_path):
     path = tmp_path / "run.h5"
     assert read_provenance(path) is None
     write_run_file(path, bend(), **ABOUT)
-    assert read_provenance(path) == ABOUT["provenance"]
+    assert read_provenance(path) == {**ABOUT["provenance"], "partial": False}
     write_run_file(path, bend(), **{**ABOUT, "partial": True})
-    assert read_provenance(path) is None
+    assert read_provenance(path) == {**ABOUT["provenance"], "partial": True}
     assert read_run_file(path).partial
 
 

@@ -22,7 +22,7 @@ def tracks(xy: np.ndarray) -> Tracks:
     return Tracks(xy, np.full(xy.shape[:2], 0.05), ("",) * len(xy))
 
 
-def series(xy: np.ndarray, body: Body = GIVEN, **options: object):  # noqa: ANN201
+def series(xy: np.ndarray, body: Body = GIVEN, **options: object):
     return measure_curvature(tracks(xy), np.arange(len(xy)) / 60, body, **options)  # type: ignore[arg-type]
 
 

@@ -83,7 +83,8 @@ def test_damaged_and_empty_frames_say_so() -> None:
 
 def test_stills_may_jump() -> None:
     tracks = link(
-        [shuffled(spots(np.add(row(a, 5), (40 * i, -30 * i))), i) for i, a in enumerate((0, 60, 120, 180, 240))], stills=True
+        [shuffled(spots(np.add(row(a, 5), (40 * i, -30 * i))), i) for i, a in enumerate((0, 60, 120, 180, 240))],
+        stills=True,
     )
     assert np.isfinite(tracks.xy).all()
     assert np.allclose(tracks.xy[4], np.add(row(240, 5), (160, -120)))

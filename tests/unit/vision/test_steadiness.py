@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from benchlab.vision.linking import Tracks
 from benchlab.vision.steadiness import Steadiness, find_shakes
 
 
@@ -41,6 +40,6 @@ def test_a_knock_moves_all_markers_at_once() -> None:
     xy = np.stack([np.linspace(0, 900, 10), np.zeros(10)], axis=1)[None] + np.zeros((60, 1, 1))
     xy[:, :, 1] += np.linspace(0, 1, 10) * 200 * time[:, None]
     xy[40] += 6.0
-    shakes = find_shakes(Tracks(xy, np.full((60, 10), 0.05), ("",) * 60), time)
+    shakes = find_shakes(xy, time)
     assert shakes.min() >= time[39] and shakes.max() <= time[41]
-    assert len(find_shakes(Tracks(xy[:39], np.full((39, 10), 0.05), ("",) * 39), time[:39])) == 0
+    assert len(find_shakes(xy[:39], time[:39])) == 0

@@ -87,7 +87,12 @@ def test_the_folder_holds_clips_tables_and_a_readme_that_say_they_are_drawn(smal
     written = make_sample_data(tmp_path / "new", 3, lambda done, total: told.append((done, total)))
     assert told == [(done, 50) for done in range(1, 51)]
     names = {path.relative_to(tmp_path / "new").as_posix() for path in written}
-    assert names == {clip.file for clip in sample_clips(3)} | {"truth.csv", "truth_series.csv", "README.md"}
+    assert names == {clip.file for clip in sample_clips(3)} | {
+        "truth.csv",
+        "truth_series.csv",
+        "pressure_log.csv",
+        "README.md",
+    }
     assert {path for path in (tmp_path / "new").rglob("*") if path.is_file()} == set(written)
     with av.open(str(tmp_path / "new/videos/tw3_slw5_s1.mp4")) as film:
         assert film.metadata["title"] == "drawn by benchlab, not filmed"
@@ -141,9 +146,12 @@ def test_the_repository_holds_what_seed_1_stands_for() -> None:
     clips = sample_clips(1)
     assert rows_of(FOLDER / "truth.csv") == as_text(truth_rows(clips))
     assert rows_of(FOLDER / "truth_series.csv") == as_text(series_rows(clips))
+    assert rows_of(FOLDER / "pressure_log.csv") == as_text(sample_data.log_rows())
     designs = sample_data._design_rows(clips)
     assert (FOLDER / "README.md").read_text(encoding="utf-8") == sample_data.readme(designs, sample_data.CONCAVITY, 1)
-    assert {f"videos/{path.name}" for path in (FOLDER / "videos").iterdir()} == {clip.file for clip in clips}
+    assert {f"videos/{path.name}" for path in (FOLDER / "videos").glob("*.mp4") if ".overlay" not in path.name} == {
+        clip.file for clip in clips
+    }
     assert sum(path.stat().st_size for path in FOLDER.rglob("*") if path.is_file()) < 22e6
     assert (FOLDER / "truth_series.csv").stat().st_size < 300e3
     for clip in clips:

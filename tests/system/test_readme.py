@@ -1,0 +1,93 @@
+"""The commands of README, run as they stand there, in a folder that looks like a clone."""
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from benchlab.vision.synthetic import Scene
+from benchlab.workflows import sample_data
+
+ROOT = Path(__file__).resolve().parents[2]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+SHELL = "\n".join(re.findall(r"```sh\n(.*?)```", README, re.DOTALL))
+COMMANDS = re.findall(r"benchlab [a-z][^&\n]*", SHELL)
+
+
+@pytest.fixture(scope="module")
+def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with sample_data in it, and with pictures of a chessboard held at several angles."""
+    folder = tmp_path_factory.mktemp("clone")
+    (folder / "sample_data").symlink_to(ROOT / "sample_data")
+    (folder / "board").mkdir()
+    flat = np.full((760, 1060), 255, np.uint8)
+    for row in range(7):
+        for column in range(10):
+            if (row + column) % 2:
+                flat[30 + 100 * row : 130 + 100 * row, 30 + 100 * column : 130 + 100 * column] = 20
+    camera = np.array([[1500.0, 0, 959.5], [0, 1500, 539.5], [0, 0, 1]])
+    corners = np.array([[0, 0], [1060, 0], [1060, 760], [0, 760]], np.float32)
+    plane = np.column_stack([(corners - (530, 380)) / 5, np.zeros(4)])  # mm, 20 mm squares
+    for i, (x, y) in enumerate(
+        [
+            (0.0, 0.0),
+            (0.5, 0.1),
+            (-0.5, 0.2),
+            (0.1, 0.5),
+            (0.2, -0.5),
+            (-0.4, -0.4),
+            (0.4, 0.4),
+            (-0.3, 0.5),
+            (0.6, -0.3),
+        ]
+    ):
+        turn, _ = cv2.Rodrigues(np.array([x, y, 0.1 * x]))
+        seen = plane @ turn.T + (60 * y, 40 * x, 420)
+        picture = (seen @ camera.T)[:, :2] / seen[:, 2:]
+        onto = cv2.getPerspectiveTransform(corners, picture.astype(np.float32))
+        cv2.imwrite(
+            str(folder / "board" / f"{i}.png"),
+            cv2.warpPerspective(flat, onto, (1920, 1080), borderValue=200, flags=cv2.INTER_AREA),
+        )
+    return folder
+
+
+def test_readme_has_commands() -> None:
+    assert len(COMMANDS) >= 6
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_command_of_readme(command: str, clone: Path, benchlab, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(clone)
+    if "sample-data" in command:  # drawn small, and elsewhere: the true ones take minutes and are in the repository
+        monkeypatch.setattr(sample_data, "FRAMES", 2)
+        monkeypatch.setattr(
+            sample_data, "_scene", lambda *_: Scene(width=320, height=180, length_px=200.0, base_px=(40.0, 40.0))
+        )
+        command = command.replace("--out sample_data", "--out drawn")
+    (clone / "results").mkdir(exist_ok=True)
+    done = benchlab(*shlex.split(command)[1:])
+    assert done.code == 0, done.err
+    assert "wrote" in done.err or "current" in done.err
+
+
+def test_the_python_of_readme_runs(clone: Path, benchlab, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(clone)
+    (clone / "results").mkdir(exist_ok=True)
+    benchlab(*shlex.split(COMMANDS[1])[1:])
+    (code,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert 1.0 < float(done.stdout.split()[0]) < 2.0
+
+
+def test_the_test_command_is_what_ci_runs() -> None:
+    (command,) = re.findall(r"<!-- test command -->\n```sh\n(.*)\n```", README)
+    assert command.endswith("-m pytest")
+    script = (ROOT / ".ci" / "run").read_text()
+    assert "<!-- test command -->" in script and "pytest" not in script
