@@ -1,8 +1,8 @@
 """Round spots measured in small windows: centroid, area, shape and contrast against the surround, many at once.
 
 A window is compared with a template for spots of its size: a core, a support that holds the whole spot, a ring around it.
-A quadratic fitted to the ring is the surround (a lit, rounded body is one); what rises above it inside the support is the spot. All of it is linear in
-the samples but for two sums of squares, so that a batch of windows takes two matrix products.
+A quadratic fitted to the ring is the surround (a lit, rounded body is one); what rises above it inside the support is
+the spot. All of it is linear in the samples but for two sums of squares, so that a batch of windows takes two products.
 """
 
 from __future__ import annotations

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from benchlab.errors import InputError, UsageError
 from benchlab.io.lens_file import read_lens
@@ -55,7 +57,7 @@ def measure(source: Path, settings: AnalyzeSettings, progress: Progress | None =
     lens = read_lens(Path(settings.lens)) if settings.lens else None
     pressure = read_pressure(Path(settings.pressure)) if settings.pressure else None
     ramp = parse_ramp(settings.ramp) if settings.ramp else None
-    with open_source(source, settings) as recording:
+    with open_source(source, settings) as recording, _one_thread():
         seen = _look(recording, settings, progress)
         info = recording.info
         warnings = [*recording.warnings, *seen.steadiness.warnings()]
@@ -84,6 +86,18 @@ def measure(source: Path, settings: AnalyzeSettings, progress: Progress | None =
             hint="look at the flag column without --max-missing, or set --roi",
         )
     return Analysis(source, info, series, scale, tuple(dict.fromkeys(warnings)), seen.interrupted)
+
+
+@contextmanager
+def _one_thread() -> Iterator[None]:
+    """OpenCV and BLAS on one thread: the decoder keeps all cores busy, and their threads would wait by spinning."""
+    threads = cv2.getNumThreads()
+    cv2.setNumThreads(1)
+    try:
+        with threadpool_limits(1):
+            yield
+    finally:
+        cv2.setNumThreads(threads)
 
 
 def open_source(source: Path, settings: AnalyzeSettings) -> Recording:
@@ -123,9 +137,6 @@ def _look(recording: Recording, settings: AnalyzeSettings, progress: Progress | 
     stills = info.kind == "stills"
     region = _region(settings.roi_px, info)
     seen = _Seen(MarkerFinder(settings.colour, settings.threshold, region, settings.markers, each=stills))
-    # The decoder keeps all cores busy; OpenCV's own threads would only wait for each other.
-    threads = cv2.getNumThreads()
-    cv2.setNumThreads(1)
     try:
         for frame in recording:
             planes = frame.planes
@@ -146,8 +157,6 @@ def _look(recording: Recording, settings: AnalyzeSettings, progress: Progress | 
         if len(seen.names) < 2:
             raise
         seen.interrupted = True
-    finally:
-        cv2.setNumThreads(threads)
     del seen.time_s[len(seen.names) :], seen.reasons[len(seen.names) :]
     return seen
 
