@@ -27,8 +27,9 @@ def analyze(
     written and marked partial.
     """
     settings.check()
-    if not source.is_dir():
-        check_regular_file(source)
+    for path in (None if source.is_dir() else source, settings.lens, settings.pressure):
+        if path is not None:
+            check_regular_file(Path(path))
     outputs.check(settings.overlay)
     with outputs.locked():
         current = outputs.current(source, asdict(settings))

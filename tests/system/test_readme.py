@@ -50,10 +50,8 @@ def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
         seen = plane @ turn.T + (60 * y, 40 * x, 420)
         picture = (seen @ camera.T)[:, :2] / seen[:, 2:]
         onto = cv2.getPerspectiveTransform(corners, picture.astype(np.float32))
-        cv2.imwrite(
-            str(folder / "board" / f"{i}.png"),
-            cv2.warpPerspective(flat, onto, (1920, 1080), borderValue=200, flags=cv2.INTER_AREA),
-        )
+        seen = cv2.warpPerspective(flat, onto, (1920, 1080), borderValue=200, flags=cv2.INTER_AREA)
+        cv2.imwrite(str(folder / "board" / f"{i}.png"), cv2.cvtColor(seen, cv2.COLOR_GRAY2BGR))
     return folder
 
 
