@@ -112,6 +112,7 @@ def analyze(
       benchlab analyze *.mov --length-mm 150 --ramp 0:0.35:2.5 --out results --jobs 2
       benchlab analyze stills/ --scale-mm-per-px 0.176 --markers 5
     """
+    from benchlab.cli.progress import progress
     from benchlab.workflows.batch import Outcome, run_batch
     from benchlab.workflows.outputs import Outputs, refuse_same_names
     from benchlab.workflows.recordings import expand
@@ -123,11 +124,14 @@ def analyze(
     refuse_same_names([Outputs.of(source, out, overwrite) for source in sources])
     work = functools.partial(_work, settings=settings, out=out, overwrite=overwrite, quiet=jobs > 1)
     outcomes: list[Outcome[Path]] = []
-    for outcome in run_batch(sources, work, jobs):
-        outcomes.append(outcome)
-        _tell(outcome, len(sources))
-        if outcome.result and outcome.result["status"] == "partial":
-            break
+    with progress("recordings", quiet=jobs == 1) as report:
+        for outcome in run_batch(sources, work, jobs):
+            outcomes.append(outcome)
+            _tell(outcome, len(sources))
+            if report:
+                report(len(outcomes), len(sources))
+            if outcome.result and outcome.result["status"] == "partial":
+                break
     done = [o.result for o in outcomes if o.result]
     failed = [o.error for o in outcomes if o.error]
     if len(sources) == 1 and failed:

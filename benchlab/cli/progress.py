@@ -60,7 +60,7 @@ def _bar(label: str) -> Iterator[Reporter]:
             if now - last > 0.1:
                 last = now
                 rate = done / max(now - started, 1e-6)
-                bar.update(task, completed=done, total=max(total, done) if total else None, rate=f"{rate:.0f} frames/s")
+                bar.update(task, completed=done, total=max(total, done) if total else None, rate=f"{rate:.3g}/s")
 
         yield report
 
@@ -80,4 +80,4 @@ class _Plain:
                 if total and total > done
                 else ""
             )
-            print(f"{self.label}: {done} frames{of}", file=sys.stderr, flush=True)
+            print(f"{self.label}: {done}{of} done", file=sys.stderr, flush=True)

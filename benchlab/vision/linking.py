@@ -8,7 +8,7 @@ keeps its distance to its neighbours; anything less certain is left out.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,7 @@ GATE = 0.4  # of the spacing: how far from its expected place a marker is looked
 IN_LINE = 0.15  # of the spacing: how far a marker may lie from the cubic through its neighbours, on a straight body
 MARKER_NOISE = 0.005  # of the spacing
 MIN_ROUNDNESS = 0.3
+RIVAL = 0.75  # share of the markers that makes a second row worth a warning
 RETRY_EVERY = 10  # frames with a marker missing after which the whole row is looked for anew
 SIZE_RANGE = (0.5, 2.0)  # area against the same marker's last area
 AREA_LOSS, AREA_GAIN = 0.06, 0.25  # least deviations from its usual area that tell a covered or a merged marker
@@ -33,11 +34,13 @@ class Tracks:
     """N markers over T frames, in order along the body.
 
     xy: (T, N, 2) pixels, NaN where left out. sd_px: (T, N). reason: T strings, why a frame has no or fewer markers.
+    rival: how many markers a second row has that is in view beside the one followed, 0 if there is none.
     """
 
     xy: FloatArray
     sd_px: FloatArray
     reason: tuple[str, ...]
+    rival: int = 0
 
 
 def link(frames: Sequence[NDArray[np.void] | None], count: int | None = None, stills: bool = False) -> Tracks:
@@ -65,7 +68,8 @@ def link(frames: Sequence[NDArray[np.void] | None], count: int | None = None, st
     xy, sd, area = _gather(frames, chosen)
     odd = np.zeros(area.shape, bool) if stills else _odd_areas(area)
     xy[odd] = np.nan
-    return _fixed_end_first(Tracks(xy, np.where(odd, np.nan, sd), _reasons(frames, chosen, odd)))
+    tracks = Tracks(xy, np.where(odd, np.nan, sd), _reasons(frames, chosen, odd), _rival(first, chain))
+    return _fixed_end_first(tracks)
 
 
 def _reference(frames: Sequence[NDArray[np.void] | None], count: int | None) -> tuple[int, Chain] | None:
@@ -86,6 +90,15 @@ def _reference(frames: Sequence[NDArray[np.void] | None], count: int | None) -> 
     if not candidates:
         return None
     return max(candidates, key=lambda item: item[1].score)
+
+
+def _rival(candidates: NDArray[np.void], chain: Chain) -> int:
+    """Length of a second row among the candidates that are not of the chain, if it is nearly as long."""
+    rest = np.delete(candidates, list(chain.order))
+    second = find_chain(rest)
+    if second is None or not is_convincing(second, rest):
+        return 0
+    return len(second.order) if len(second.order) >= max(4, RIVAL * len(chain.order)) else 0
 
 
 class _Follower:
@@ -276,4 +289,4 @@ def _fixed_end_first(tracks: Tracks) -> Tracks:
         turned = tuple(start[1]) < tuple(start[0])
     if not turned:
         return tracks
-    return Tracks(tracks.xy[:, ::-1], tracks.sd_px[:, ::-1], tracks.reason)
+    return replace(tracks, xy=tracks.xy[:, ::-1], sd_px=tracks.sd_px[:, ::-1])

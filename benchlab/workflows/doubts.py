@@ -26,9 +26,11 @@ def nothing_found(source: Path, colour: str, spots: list[int]) -> InputError:
     return InputError(what, file=source, hint="check --colour, or set --threshold, --markers or --roi")
 
 
-def doubts(series: CurvatureSeries, scale: Scale, settings: AnalyzeSettings) -> list[str]:
-    """The warnings that a series and its scale give cause to."""
+def doubts(series: CurvatureSeries, scale: Scale, settings: AnalyzeSettings, rival: int) -> list[str]:
+    """The warnings that a series and its scale give cause to. rival: markers of a second row in view."""
     found = []
+    if rival:
+        found.append(f"a second row of {rival} markers is in view: say which one with --roi")
     frames = len(series.time_s)
     chords = np.hypot(*np.moveaxis(np.diff(series.markers_px, axis=1), -1, 0)).sum(axis=1)
     chords = chords[np.isfinite(chords)]

@@ -77,7 +77,7 @@ def measure(source: Path, settings: AnalyzeSettings, progress: Progress | None =
     series = _with_pressure(series, pressure or ramp, settings)
     if pressure is not None:
         warnings += pressure.warnings
-    warnings += doubts(series, scale, settings)
+    warnings += doubts(series, scale, settings, tracks.rival)
     missing = 1 - series.measured.mean()
     if missing > settings.max_missing:
         raise InputError(

@@ -100,3 +100,10 @@ def test_no_row_no_tracks(frames: list) -> None:
     tracks = link(frames)
     assert tracks.xy.shape == (3, 0, 2)
     assert set(tracks.reason) == {"no markers"}
+
+
+def test_a_second_row_is_told_and_a_few_stray_spots_are_not() -> None:
+    two = [spots(np.concatenate([row(a), np.add(row(a, 9), (0, 450))])) for a in ANGLES]
+    assert link(two).rival == 9
+    stray = np.array([[1500.0, 900], [200, 950], [1700, 100]])
+    assert link([spots(np.concatenate([row(a), stray])) for a in ANGLES]).rival == 0
