@@ -28,11 +28,13 @@ def looped_clip(folder: Path, lines: int, fps: int, frames: int, megabits: float
     phase = np.arange(unique) / unique
     angles = np.radians(60 * (1 - np.cos(2 * np.pi * phase)))
     if not once.exists():
+        drawn = once.with_stem(once.stem + "_unfinished")
         rate = {"maxrate": f"{megabits:g}M", "bufsize": f"{megabits:g}M"}
         with VideoWriter(once, scene.width, scene.height, fps=fps, bitrate_bps=int(megabits * 1e6),
                          preset="veryfast", options=rate) as writer:  # fmt: skip
             for planes in draw_frames(scene, angles, np.random.default_rng(7)):
                 writer.write(planes)
+        drawn.rename(once)
     loops = -(-frames // unique) - 1
     subprocess.run(
         [
@@ -43,7 +45,7 @@ def looped_clip(folder: Path, lines: int, fps: int, frames: int, megabits: float
             "-stream_loop",
             str(loops),
             "-i",
-            once,
+            drawn,
             "-frames:v",
             str(frames),
             "-c",

@@ -71,13 +71,15 @@ def analyze_command(clip: Path, *options: str) -> list[str | Path]:
     return [sys.executable, "-m", "benchlab", "analyze", clip, "--out", out, "--overwrite", *options]
 
 
-def speed(cache: Path, rounds: int) -> None:
+def speed(cache: Path, rounds: int, sizes: list[int]) -> None:
     """Whole command, files and start-up included, against ffmpeg's null decode and the naive OpenCV loop."""
     print(
         "\n| clip | ffmpeg -f null, frames/s | benchlab | benchlab --fast | naive OpenCV | benchlab / ffmpeg | --fast / ffmpeg | benchlab / naive |"
     )
     print("|---|---|---|---|---|---|---|---|")
     for lines, fps, frames, megabits in ((1080, 60, 3600, 40), (2160, 30, 900, 80)):
+        if lines not in sizes:
+            continue
         clip = looped_clip(cache, lines, fps, frames, megabits)
         rows = []
         for _ in range(rounds):
@@ -98,8 +100,6 @@ def speed(cache: Path, rounds: int) -> None:
 
 def memory(cache: Path) -> None:
     """Largest resident memory of the whole command."""
-    import resource
-
     peak = {}
     for frames in (1000, 10_000):
         clip = looped_clip(cache, 1080, 60, frames, 10)
@@ -109,7 +109,6 @@ def memory(cache: Path) -> None:
             [sys.executable, *command, *analyze_command(clip)[2:]], check=True, capture_output=True, text=True
         )
         peak[frames] = int(done.stdout.split()[-1]) / 1024
-    del resource
     print(
         f"\nmemory: {peak[1000]:.0f} MiB for 1,000 frames, {peak[10_000]:.0f} MiB for 10,000: **{peak[10_000] / peak[1000]:.2f} ×**"
     )
@@ -199,6 +198,7 @@ def main() -> None:
     parser.add_argument("parts", nargs="*", default=["speed", "memory", "accuracy", "real"])
     parser.add_argument("--cache", type=Path, default=Path(tempfile.gettempdir()) / "benchlab-clips")
     parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--lines", type=int, nargs="*", default=[1080, 2160], help="picture heights to time")
     parser.add_argument("--save", type=Path, help="also write the accuracy figures as JSON")
     chosen = parser.parse_args()
     print(f"{date.today()}, {platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}")
@@ -212,7 +212,7 @@ def main() -> None:
     if "memory" in chosen.parts:
         memory(chosen.cache)
     if "speed" in chosen.parts:
-        speed(chosen.cache, chosen.rounds)
+        speed(chosen.cache, chosen.rounds, chosen.lines)
 
 
 if __name__ == "__main__":
