@@ -30,28 +30,28 @@ def looped_clip(folder: Path, lines: int, fps: int, frames: int, megabits: float
     if not once.exists():
         drawn = once.with_stem(once.stem + "_unfinished")
         rate = {"maxrate": f"{megabits:g}M", "bufsize": f"{megabits:g}M"}
-        with VideoWriter(once, scene.width, scene.height, fps=fps, bitrate_bps=int(megabits * 1e6),
+        with VideoWriter(drawn, scene.width, scene.height, fps=fps, bitrate_bps=int(megabits * 1e6),
                          preset="veryfast", options=rate) as writer:  # fmt: skip
             for planes in draw_frames(scene, angles, np.random.default_rng(7)):
                 writer.write(planes)
         drawn.rename(once)
     loops = -(-frames // unique) - 1
+    loop = [
+        "ffmpeg",
+        "-v",
+        "error",
+        "-y",
+        "-stream_loop",
+        str(loops),
+        "-i",
+        once,
+        "-frames:v",
+        str(frames),
+        "-c",
+        "copy",
+    ]
     subprocess.run(
-        [
-            "ffmpeg",
-            "-v",
-            "error",
-            "-y",
-            "-stream_loop",
-            str(loops),
-            "-i",
-            drawn,
-            "-frames:v",
-            str(frames),
-            "-c",
-            "copy",
-            path,
-        ],
+        [*loop, path],
         check=True,
     )
     return path
