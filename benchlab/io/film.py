@@ -183,6 +183,7 @@ class Film(Recording):
             full_range=tags.full_range,
             matrix=tags.matrix,
             start_s=float(self._first_stamp * time_base),
+            title=str(container.metadata.get("title", "")),
             mirrored=mirrored,
             fps=rate,
         )

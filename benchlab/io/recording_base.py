@@ -29,6 +29,7 @@ class RecordingInfo:
     width, height: of the picture as displayed, sample aspect and rotation applied.
     stored_width, stored_height: of the luma plane.
     frame_count, duration_s: as the header claims them, None where it does not; hints for a progress bar, not proof.
+    title: what the file says of itself (drawn clips say that they are drawn).
     start_s: the first presentation stamp, which is subtracted from all times.
     fps: the average rate of the header, None where unknown or for stills.
 
@@ -56,6 +57,7 @@ class RecordingInfo:
     start_s: float = 0.0
     mirrored: bool = False
     fps: float | None = None
+    title: str = ""
 
     def _affine(self) -> tuple[FloatArray, FloatArray]:
         """(2, 2) matrix A and (2,) shift b with displayed = A · stored + b, for pixel centres."""

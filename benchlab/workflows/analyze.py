@@ -51,7 +51,13 @@ def save(analysis: Analysis, settings: AnalyzeSettings, outputs: Outputs) -> dic
     summary = summarise(analysis, outputs, settings.overlay)
     with outputs.staged() as stage:
         write_series_csv(stage.table, series)
-        note = f"{analysis.scale.source}; {settings.fit} fit" + ("; PARTIAL, interrupted" if analysis.partial else "")
+        notes = (
+            analysis.info.title,
+            analysis.scale.source,
+            f"{settings.fit} fit",
+            "PARTIAL, interrupted" * analysis.partial,
+        )
+        note = "; ".join(note for note in notes if note)
         save_png(draw_curvature_figure(series, analysis.source.name, note), stage.figure)
         if settings.overlay:
             _write_overlay(analysis, settings, stage.overlay)

@@ -2,39 +2,16 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from pathlib import Path
 
 from benchlab.errors import InputError, UsageError
+from benchlab.io.stills import SUFFIXES as PICTURES
+from benchlab.io.stills import natural_key
 
-PICTURES = {".jpg", ".jpeg", ".png", ".tif", ".tiff"}
-VIDEOS = {
-    ".mp4",
-    ".mov",
-    ".m4v",
-    ".mkv",
-    ".avi",
-    ".webm",
-    ".mts",
-    ".m2ts",
-    ".ts",
-    ".3gp",
-    ".mpg",
-    ".mpeg",
-    ".wmv",
-    ".ogv",
-}
-
-
-def natural_key(path: Path) -> list[tuple[int, int, str]]:
-    """Sorts img2 before img10.
-
-    >>> [p.name for p in sorted(map(Path, ["b10", "b2", "a1"]), key=natural_key)]
-    ['a1', 'b2', 'b10']
-    """
-    parts = re.split(r"(\d+)", path.name.casefold())
-    return [(1, int(part), "") if part.isdecimal() else (0, 0, part) for part in parts]
+VIDEOS = frozenset(
+    [".mp4", ".mov", ".m4v", ".mkv", ".avi", ".webm", ".mts", ".m2ts", ".ts", ".3gp", ".mpg", ".mpeg", ".wmv", ".ogv"]
+)
 
 
 def expand(inputs: Sequence[Path]) -> list[Path]:
@@ -53,7 +30,7 @@ def expand(inputs: Sequence[Path]) -> list[Path]:
 
 def _of_folder(folder: Path) -> list[Path]:
     files = [p for p in folder.iterdir() if not p.name.startswith(".") and p.is_file() and ".overlay." not in p.name]
-    videos = sorted((p for p in files if p.suffix.lower() in VIDEOS), key=natural_key)
+    videos = sorted((p for p in files if p.suffix.lower() in VIDEOS), key=lambda p: natural_key(p.name))
     pictures = any(p.suffix.lower() in PICTURES for p in files)
     results = {p.stem for p in files if p.suffix == ".h5"}
     if videos and any(p.suffix.lower() in PICTURES and p.stem not in results for p in files):
