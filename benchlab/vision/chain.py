@@ -21,7 +21,7 @@ SIZE_TOLERANCE = 0.45  # of the logarithm of the ratio of areas
 COLOUR_TOLERANCE = 0.35  # rad of hue, and of the logarithm of the ratio of contrasts
 MAX_TURN = 2.2  # rad from one link to the next
 MAX_CONSIDERED = 40
-LEAST_SCORE, LEAST_ISOLATION, LEAST_ROUNDNESS = 0.3, 0.65, 0.6  # of a chain that is believed; the score a link
+LEAST_SCORE, LEAST_ISOLATION, LEAST_ROUNDNESS = 0.3, 0.65, 0.4  # of a chain that is believed; the score a link
 STARTS = 150
 MAX_LOSS = -3.0  # the worst link that completes a chain of known length
 

@@ -27,10 +27,11 @@ def analyze(
     written and marked partial.
     """
     settings.check()
-    for path in (None if source.is_dir() else source, settings.lens, settings.pressure):
-        if path is not None:
-            check_regular_file(Path(path))
-    outputs.check(settings.overlay)
+    inputs = [source, *(Path(name) for name in (settings.lens, settings.pressure) if name)]
+    for path in inputs:
+        if path != source or not source.is_dir():
+            check_regular_file(path)
+    outputs.check(settings.overlay, inputs)
     with outputs.locked():
         current = outputs.current(source, asdict(settings))
         if current is not None:

@@ -9,7 +9,7 @@ import platform
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
@@ -25,17 +25,22 @@ from benchlab.io.run_file import read_provenance
 
 @dataclass(frozen=True)
 class Outputs:
-    """`<stem>.h5`, `.csv`, `.png` and, if asked for, `.overlay.mp4` in one folder."""
+    """`<stem>.h5`, `.csv`, `.png` and, if asked for, `.overlay.mp4` in one folder.
+
+    of_png: the recording is itself a PNG picture, so that the figure is `<stem>.figure.png`.
+    """
 
     folder: Path
     stem: str
     overwrite: bool = False
+    of_png: bool = False
 
     @classmethod
     def of(cls, source: Path, out: Path | None, overwrite: bool = False) -> Outputs:
         """Beside the recording, or in `out`."""
-        resolved = source.resolve()
-        return cls(out or resolved.parent, resolved.name if source.is_dir() else resolved.stem, overwrite)
+        path = source.resolve()
+        stem = path.name if path.is_dir() else path.stem
+        return cls(out or path.parent, stem, overwrite, of_png=path.suffix.lower() == ".png")
 
     @property
     def run_file(self) -> Path:
@@ -47,7 +52,7 @@ class Outputs:
 
     @property
     def figure(self) -> Path:
-        return self.folder / f"{self.stem}.png"
+        return self.folder / f"{self.stem}{'.figure' * self.of_png}.png"
 
     @property
     def overlay(self) -> Path:
@@ -56,10 +61,11 @@ class Outputs:
     def paths(self, overlay: bool) -> list[Path]:
         return [self.run_file, self.table, self.figure] + ([self.overlay] if overlay else [])
 
-    def check(self, overlay: bool) -> None:
+    def check(self, overlay: bool, inputs: Iterable[Path]) -> None:
         """The folder exists (made if only its last part is missing) and may be written; nothing of others is in the way.
 
-        Results of an earlier benchlab run may be replaced; anything else only with `overwrite`. Raises UsageError.
+        Results of an earlier benchlab run may be replaced; anything else only with `overwrite`; inputs never.
+        Raises UsageError.
         """
         try:
             self.folder.mkdir(exist_ok=True)
@@ -75,7 +81,12 @@ class Outputs:
         if not os.access(self.folder, os.W_OK | os.X_OK):
             raise UsageError("the output folder is read-only", file=self.folder, hint="choose another --out")
         ours = {} if self.overwrite else self._written_before()
+        read = {path.resolve() for path in inputs}
         for path in self.paths(overlay):
+            if path.resolve() in read:
+                raise UsageError(
+                    "is read by this analysis and would be replaced", file=path, hint="choose another --out"
+                )
             if (
                 path.exists()
                 and not self.overwrite

@@ -184,6 +184,16 @@ def test_files_that_are_not_ours_are_not_replaced(benchlab, drawn_clip, tmp_path
     assert benchlab("analyze", clip, "--fit", "pratt").code == 2
 
 
+def test_an_input_is_never_replaced(benchlab, drawn_clip, tmp_path) -> None:
+    clip = Path(shutil.copy(drawn_clip, tmp_path))
+    log = tmp_path / "trial.csv"
+    log.write_text("time_s,pressure_MPa\n0,0\n9,0.3\n")
+    refused = benchlab("analyze", clip, "--pressure", log, "--overwrite")
+    assert refused.code == 2 and "would be replaced" in refused.err
+    assert log.read_text().endswith("9,0.3\n")
+    assert benchlab("analyze", clip, "--pressure", log, "--out", tmp_path / "out").code == 0
+
+
 def test_a_batch_keeps_the_good_names_the_bad_and_resumes(benchlab, drawn_clip, tmp_path) -> None:
     films = tmp_path / "films"
     films.mkdir()

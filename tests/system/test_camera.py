@@ -50,7 +50,7 @@ def test_a_squeezed_picture_is_stretched(benchlab, make_clip, pictures) -> None:
     clip = make_clip(
         "t.mp4", size=(320, 360), frames=16, draw=lambda i: squeezed[i], aspect=Fraction(2), options={"crf": "12"}
     )
-    assert angles(benchlab("analyze", clip, "--json")) == pytest.approx(BENT_DEG, abs=0.8)
+    assert angles(benchlab("analyze", clip, "--json")) == pytest.approx(BENT_DEG, abs=1.5)  # the markers are 3 samples wide
 
 
 def test_an_aruco_marker_gives_the_scale(benchlab, tmp_path, pictures) -> None:
