@@ -14,7 +14,6 @@ from benchlab.cli.options import Finite, Numbers
 from benchlab.errors import BatchError, BenchlabError, InputError, printable
 
 NUMBER = Finite()
-SCALE = "Scale (give one; with none, the markers are assumed to span the length)"
 
 
 @click.command(short_help="Curvature and bending angle from videos of marked actuators.")
@@ -56,7 +55,7 @@ SCALE = "Scale (give one; with none, the markers are assumed to span the length)
     is_flag=True,
     help="Turn the sign of the angle round. It is positive towards the side of the largest bend.",
 )
-@click.option("--scale-mm-per-px", type=NUMBER, help="Millimetres a pixel.")
+@click.option("--scale-mm-per-px", type=NUMBER, help="Millimetres a pixel. Give this or one of the next three.")
 @click.option("--reference-mm", type=NUMBER, help="Known distance between the two points of --reference-px.")
 @click.option(
     "--reference-px", type=Numbers("X1", "Y1", "X2", "Y2"), help="Two points picked in the picture as displayed."
