@@ -124,13 +124,18 @@ def analyze(
     work = functools.partial(_work, settings=settings, out=out, overwrite=overwrite, quiet=jobs > 1)
     outcomes: list[Outcome[Path]] = []
     with progress("recordings", quiet=jobs == 1) as report:
-        for outcome in run_batch(sources, work, jobs):
-            outcomes.append(outcome)
-            _tell(outcome, len(sources))
-            if report:
-                report(len(outcomes), len(sources))
-            if outcome.result and outcome.result["status"] == "partial":
-                break
+        try:
+            for outcome in run_batch(sources, work, jobs):
+                outcomes.append(outcome)
+                _tell(outcome, len(sources))
+                if report:
+                    report(len(outcomes), len(sources))
+                if outcome.result and outcome.result["status"] == "partial":
+                    break
+        except KeyboardInterrupt:
+            finished = f"{len(outcomes)} of {len(sources)} recordings are done"
+            click.echo(f"benchlab: {finished}; those under way are kept as far as they got, marked partial", err=True)
+            raise
     done = [o.result for o in outcomes if o.result]
     failed = [o.error for o in outcomes if o.error]
     if len(sources) == 1 and failed:
@@ -173,18 +178,24 @@ def _tell(outcome: Any, of: int) -> None:
     result = outcome.result
     name = printable(result["video"])
     if result["status"] == "current":
-        click.echo(f"{name}: current, skipped (--overwrite to analyse again)", err=True)
+        click.echo(f"{name}: current, skipped (--overwrite to analyse again); {_largest(result)}", err=True)
         return
     partial = "PARTIAL, interrupted; " if result["status"] == "partial" else ""
     click.echo(
         f"{name}: {partial}{result['frames_measured']} of {result['frames']} frames measured; "
-        f"largest angle {result['max_angle_deg']:.2f} ± {result['max_angle_sd_deg']:.2f} deg (1 sd)",
+        f"{result['markers']} markers; {_largest(result)}",
         err=True,
     )
     for warning in result["warnings"]:
         click.echo(f"  warning: {printable(warning)}", err=True)
     for path in result["outputs"]:
         click.echo(f"  wrote {printable(path)}", err=True)
+
+
+def _largest(result: dict[str, Any]) -> str:
+    sd = result["max_angle_sd_deg"]
+    spread = "of unknown uncertainty" if sd is None else f"± {sd:.2f} deg (1 sd)"
+    return f"largest angle {result['max_angle_deg']:.2f} {spread}"
 
 
 def _placed(error: BenchlabError, source: Path) -> str:

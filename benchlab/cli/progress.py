@@ -75,9 +75,6 @@ class _Plain:
         now = time.monotonic()
         if now - self.last >= PLAIN_EVERY_S:
             self.last = now
-            of = (
-                f" of {total}, {(now - self.started) * (total - done) / done:.0f} s left"
-                if total and total > done
-                else ""
-            )
-            print(f"{self.label}: {done}{of} done", file=sys.stderr, flush=True)
+            known = total is not None and total > done
+            left = f" of {total}, {(now - self.started) * (total - done) / done:.0f} s left" if total and known else ""
+            print(f"{self.label}: {done}{left}", file=sys.stderr, flush=True)

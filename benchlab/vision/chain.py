@@ -8,7 +8,6 @@ right colour and shape fails on spacing and direction.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,9 +19,13 @@ TURN_TOLERANCE = 0.55  # rad, change of the turning angle from link to link, and
 SIZE_TOLERANCE = 0.45  # of the logarithm of the ratio of areas
 COLOUR_TOLERANCE = 0.35  # rad of hue, and of the logarithm of the ratio of contrasts
 MAX_TURN = 2.2  # rad from one link to the next
+MAX_WINDING = (
+    6.8  # rad from the first link to the last: a body that closes a full circle, and no spiral through clutter
+)
 MAX_CONSIDERED = 40
 LEAST_SCORE, LEAST_ISOLATION, LEAST_ROUNDNESS = 0.3, 0.65, 0.4  # of a chain that is believed; the score a link
 STARTS = 150
+LONG, LEAST_ISOLATION_OF_LONG = 6, 0.4  # so many markers in a row are no accident, whatever they lie on
 MAX_LOSS = -3.0  # the worst link that completes a chain of known length
 
 
@@ -55,7 +58,8 @@ def find_chain(candidates: NDArray[np.void], count: int | None = None) -> Chain 
 def is_convincing(chain: Chain, candidates: NDArray[np.void]) -> bool:
     """Whether a chain is markers on its own evidence: links that earn their keep, round spots that stand out evenly."""
     members = candidates[list(chain.order)]
-    plain = np.median(members["isolation"]) >= LEAST_ISOLATION and np.median(members["roundness"]) >= LEAST_ROUNDNESS
+    isolation = LEAST_ISOLATION if len(members) < LONG else LEAST_ISOLATION_OF_LONG
+    plain = np.median(members["isolation"]) >= isolation and np.median(members["roundness"]) >= LEAST_ROUNDNESS
     return bool(plain and chain.score >= LEAST_SCORE * (len(chain.order) - 2))
 
 
@@ -110,8 +114,10 @@ def _grow(
                 best_gain, best_end, best_next = float(1 - cost[nearest]), end, nearest
         if best_next < 0:
             break
-        order = [*order, best_next] if best_end else [best_next, *order]
-        score += best_gain
+        longer = [*order, best_next] if best_end else [best_next, *order]
+        if _winding(xy[longer]) > MAX_WINDING:
+            break
+        order, score = longer, score + best_gain
     return order, float(score)
 
 
@@ -135,6 +141,8 @@ def _link_cost(xy: FloatArray, likeness: FloatArray, last: list[int], before: in
     return np.asarray(np.where(np.abs(turn) < MAX_TURN, cost, np.inf))
 
 
-def spacings(xy: FloatArray) -> list[float]:
-    """Distances between successive points of a chain (N, 2)."""
-    return [float(np.hypot(*(b - a))) for a, b in pairwise(xy)]
+def _winding(xy: FloatArray) -> float:
+    """How far a chain (N, 2) turns from its first link to its last, rad."""
+    along = np.diff(xy, axis=0)
+    cross = along[:-1, 0] * along[1:, 1] - along[:-1, 1] * along[1:, 0]
+    return float(np.abs(np.arctan2(cross, (along[:-1] * along[1:]).sum(axis=1)).sum()))

@@ -22,6 +22,7 @@ POOLED_FRAMES = 31  # a frame and its neighbours, whose scatter is taken togethe
 NOT_CIRCULAR = 0.005  # scatter about the circle, as a share of the arc, from which a body is no circular arc
 NOT_NOISE = 4.0  # and by how much that scatter must exceed the jitter of the markers in time
 DOUBTFUL_SD_RAD = np.radians(1.5)
+UNBELIEVABLE_SPAN = 0.15  # variation of the marked length at which the markers cannot be the same all along
 STRAIGHT = 1e-9  # rad: a smaller bend has no radius, noise or not
 
 
@@ -56,7 +57,9 @@ def measure_curvature(
     scale = body.scale or scale_from_span(
         _full_spans(fits, used), body.span_mm or body.length_mm, assumed=body.span_mm is None
     )
-    noise, student = _pooled_noise(fits, jitter, stills)
+    # Without scatter and without neighbours in time, what the pictures say about each centroid has to do.
+    alone = jitter if np.isfinite(jitter) else float(np.nanmedian(tracks.sd_px))
+    noise, student = _pooled_noise(fits, alone, stills)
     curvature = fits.curvature * _sign(fits.curvature, flip)
     curvature_sd = fits.curvature_sd_per_noise * noise * student
     per_mm = 1 / scale.mm_per_px
@@ -79,7 +82,7 @@ def measure_curvature(
         curvature_per_px=curvature,
         fit_rms_px=fits.rms,
         centroid_sd_px=np.where(np.isfinite(curvature), noise, np.nan),
-        flag=_flags(tracks, fits, used, jitter, kappa_sd * body.length_mm),
+        flag=_flags(tracks, fits, used, jitter, kappa_sd * body.length_mm, scale.span_variation > UNBELIEVABLE_SPAN),
         names=names,
     )
     return series, scale
@@ -128,7 +131,9 @@ def _sign(curvature: FloatArray, flip: bool) -> float:
     return -sign if flip else sign
 
 
-def _flags(tracks: Tracks, fits: CircleFits, used: np.ndarray, jitter: float, angle_sd: FloatArray) -> tuple[str, ...]:
+def _flags(
+    tracks: Tracks, fits: CircleFits, used: np.ndarray, jitter: float, angle_sd: FloatArray, length_varies: bool
+) -> tuple[str, ...]:
     """One string a frame: the reason of a missing value, or what is doubtful about a measured one."""
     n = used.sum(axis=1)
     freedom = np.maximum(fits.dof, 1)
@@ -145,8 +150,10 @@ def _flags(tracks: Tracks, fits: CircleFits, used: np.ndarray, jitter: float, an
         words = [reason] if reason else []
         if outlier[t]:
             words.append("outlier left out")
-        if n[t] == 3 < used.shape[1]:
+        if n[t] == 3:
             words.append("only 3 markers")
+        if length_varies:
+            words.append("marked length varies")
         if bent_otherwise[t]:
             words.append("not constant curvature")
         if angle_sd[t] > DOUBTFUL_SD_RAD:

@@ -17,7 +17,7 @@ from benchlab.vision.chain import Chain, find_chain, is_convincing
 from benchlab.vision.picture import FloatArray
 
 SAMPLED_FRAMES = 32
-SHARE_TO_BELIEVE = 0.2  # of the sampled frames with a chain that must show the largest count
+SHARE_TO_BELIEVE = 0.35  # of the sampled frames with a chain that must show the largest count
 GATE = 0.4  # of the spacing: how far from its expected place a marker is looked for
 IN_LINE = 0.15  # of the spacing: how far a marker may lie from the cubic through its neighbours, on a straight body
 MARKER_NOISE = 0.005  # of the spacing

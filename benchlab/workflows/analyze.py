@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from benchlab.errors import BenchlabError
+from benchlab.errors import InputError
 from benchlab.io.files import check_regular_file, sha256
 from benchlab.io.run_file import write_run_file
 from benchlab.io.table import write_series_csv
@@ -38,7 +38,7 @@ def analyze(
             return current
         try:
             analysis = measure(source, settings, progress)
-        except BenchlabError as error:
+        except InputError as error:
             error.file = error.file or str(source)
             raise
         return save(analysis, settings, outputs)
@@ -49,7 +49,8 @@ def save(analysis: Analysis, settings: AnalyzeSettings, outputs: Outputs) -> dic
     from benchlab.report.figures import draw_curvature_figure, save_png
 
     series, chosen = analysis.series, asdict(settings)
-    summary = summarise(analysis, outputs, settings.overlay)
+    overlay = settings.overlay and not analysis.partial  # who interrupts does not want to wait for a second pass
+    summary = summarise(analysis, outputs, overlay)
     with outputs.staged() as stage:
         write_series_csv(stage.table, series)
         notes = (
@@ -60,9 +61,9 @@ def save(analysis: Analysis, settings: AnalyzeSettings, outputs: Outputs) -> dic
         )
         note = "; ".join(note for note in notes if note)
         save_png(draw_curvature_figure(series, analysis.source.name, note), stage.figure)
-        if settings.overlay:
+        if overlay:
             _write_overlay(analysis, settings, stage.overlay)
-        written = [p for p in stage.paths(settings.overlay) if p != stage.run_file]
+        written = [p for p in stage.paths(overlay) if p != stage.run_file]
         write_run_file(
             stage.run_file,
             series,
@@ -88,12 +89,13 @@ def summarise(analysis: Analysis, outputs: Outputs, overlay: bool) -> dict[str, 
     angle = np.where(rows, series.angle_rad, -np.inf)
     peak = int(np.argmax(angle))
     known = series.time_s[np.isfinite(series.time_s)]
-    return {
+    summary = {
         "video": str(analysis.source),
         "status": "partial" if analysis.partial else "measured",
         "frames": len(series.time_s),
         "frames_measured": int(series.measured.sum()),
         "duration_s": round(float(known.max() - known.min()), 6) if len(known) else None,
+        "markers": int(series.used.shape[1]),
         "scale_mm_per_px": float(analysis.scale.mm_per_px),
         "max_angle_deg": float(np.degrees(series.angle_rad[peak])),
         "max_angle_sd_deg": float(np.degrees(series.angle_sd_rad[peak])),
@@ -102,6 +104,7 @@ def summarise(analysis: Analysis, outputs: Outputs, overlay: bool) -> dict[str, 
         "warnings": list(analysis.warnings),
         "outputs": [str(p) for p in outputs.paths(overlay)],
     }
+    return {k: None if isinstance(v, float) and not np.isfinite(v) else v for k, v in summary.items()}
 
 
 def _write_overlay(analysis: Analysis, settings: AnalyzeSettings, path: Path) -> None:

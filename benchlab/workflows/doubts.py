@@ -16,13 +16,14 @@ from benchlab.workflows.settings import AnalyzeSettings
 OTHER_LENGTH = 0.2  # relative difference between the marked length and al that is asked about
 
 
-def nothing_found(source: Path, colour: str, spots: list[int]) -> InputError:
+def nothing_found(source: Path, settings: AnalyzeSettings, spots: list[int]) -> InputError:
     """The refusal of a recording without an actuator; spots: candidates of each frame."""
+    colour, row = settings.colour, f"row of {settings.markers or 'three or more'} markers"
     most = max(spots, default=0)
     if most == 0:
-        what = f"no actuator found in any of {len(spots)} frames: nothing {colour} stands out"
+        what = f"no actuator found in any of {len(spots)} frames: no {colour} {row} stands out"
     else:
-        what = f"no actuator found in any of {len(spots)} frames: at most {most} {colour} spots, in no row of markers"
+        what = f"no actuator found in any of {len(spots)} frames: at most {most} {colour} spots, in no {row}"
     return InputError(what, file=source, hint="check --colour, or set --threshold, --markers or --roi")
 
 
@@ -40,10 +41,12 @@ def doubts(series: CurvatureSeries, scale: Scale, settings: AnalyzeSettings, riv
             f"the markers span {marked:.0f} mm, the angle is for {settings.length_mm:g} mm: is that the length (--length-mm)?"
         )
     if scale.assumed:
-        found.append(f"no scale given: the markers are assumed to span {settings.length_mm:g} mm (--length-mm)")
+        inside = " inside --roi" if settings.roi_px else ""
+        found.append(f"no scale given: the markers{inside} are assumed to span {settings.length_mm:g} mm (--length-mm)")
     if scale.span_variation > 0.03:
         found.append(
-            f"the marked length varies by {scale.span_variation:.0%}: the body stretches or leaves the picture plane"
+            f"the marked length varies by {scale.span_variation:.0%}: the body stretches or leaves the picture plane, "
+            "or not all markers are found (--markers)"
         )
     if frames == 1:
         found.append("1 frame: no curvature against time")
@@ -66,9 +69,21 @@ def doubts(series: CurvatureSeries, scale: Scale, settings: AnalyzeSettings, riv
         found.append(
             f"all markers jerk together in {len(shakes)} frames, first at {shakes[0]:.2f} s: was the camera knocked?"
         )
-    if series.pressure_MPa is not None and not np.isfinite(series.pressure_MPa).all():
-        outside = int((~np.isfinite(series.pressure_MPa)).sum())
-        found.append(f"the pressure record does not cover {outside} of {frames} frames")
+    found += _of_pressure(series)
     if not math.isfinite(scale.mm_per_px):
         found.append("no frame shows both end markers")
+    return found
+
+
+def _of_pressure(series: CurvatureSeries) -> list[str]:
+    """Doubts about the pressure beside the angle."""
+    pressure = series.pressure_MPa
+    if pressure is None:
+        return []
+    known = np.isfinite(pressure)
+    found = []
+    if not known.all():
+        found.append(f"the pressure record does not cover {int((~known).sum())} of {len(known)} frames")
+    if known.sum() > 1 and np.ptp(pressure[known]) == 0:
+        found.append("the pressure does not change during the recording: check --sync")
     return found

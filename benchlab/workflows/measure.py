@@ -38,6 +38,7 @@ from benchlab.workflows.settings import AnalyzeSettings
 
 Progress = Callable[[int, int | None], None]
 ARUCO_TRIES = 60  # pictures
+LEAST_MOTION_DEG = 1.0
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,7 @@ def measure(source: Path, settings: AnalyzeSettings, progress: Progress | None =
     time_s = np.array(seen.time_s)
     names = tuple(seen.names) if info.kind == "stills" else ()
     if tracks.xy.shape[1] == 0 or not (np.isfinite(tracks.xy[..., 0]).sum(axis=1) >= 3).any():
-        raise nothing_found(source, settings.colour, [len(c) for c in candidates if c is not None])
+        raise nothing_found(source, settings, [len(c) for c in candidates if c is not None])
     series, scale = measure_curvature(
         tracks, time_s, body, settings.fit, settings.flip, stills=info.kind == "stills", names=names
     )
@@ -211,6 +212,17 @@ def _known_scale(settings: AnalyzeSettings, seen: _Seen, info: RecordingInfo, le
     return None
 
 
+def _check_moves(series: CurvatureSeries) -> None:
+    """Raises InputError where the angle moves too little to tell when the motion starts."""
+    moved = float(np.degrees(np.ptp(series.angle_rad[series.measured])))
+    least = max(LEAST_MOTION_DEG, 10 * float(np.degrees(np.nanmedian(series.angle_sd_rad))))
+    if moved < least:
+        raise InputError(
+            f"the angle moves by {moved:.2g} deg, less than the {least:.2g} deg that an onset of motion takes",
+            hint="give --sync SECONDS",
+        )
+
+
 def _with_pressure(
     series: CurvatureSeries, record: PressureRecord | Ramp | None, settings: AnalyzeSettings
 ) -> CurvatureSeries:
@@ -219,6 +231,8 @@ def _with_pressure(
         return series
     if not np.isfinite(series.time_s).any():
         raise UsageError("stills have no time to look the pressure up by", hint="give --fps")
+    if settings.sync is None and (settings.sync_onset or isinstance(record, Ramp)):
+        _check_moves(series)
     if settings.sync is not None:
         start = settings.sync
     elif isinstance(record, Ramp):

@@ -94,7 +94,7 @@ class Outputs:
                 and ours.get(path.name) != sha256(path)
             ):
                 raise UsageError(
-                    "exists and is not a result of this recording as benchlab wrote it",
+                    "exists, and no run file beside it says that benchlab wrote it so",
                     file=path,
                     hint="choose another --out, or replace it with --overwrite",
                 )
@@ -128,9 +128,16 @@ class Outputs:
         try:
             with tempfile.TemporaryDirectory(dir=self.folder, prefix=f".{self.stem[:40]}-") as hidden:
                 stage = replace(self, folder=Path(hidden))
+                before = self._written_before()
                 yield stage
-                for path in sorted(Path(hidden).iterdir(), key=lambda p: p == stage.run_file):
+                made = sorted(Path(hidden).iterdir(), key=lambda p: p == stage.run_file)
+                for path in made:
                     path.replace(self.folder / path.name)
+                # A result of the run before that this one did not make would tell another story.
+                for name in before.keys() - {path.name for path in made}:
+                    stale = self.folder / name
+                    if stale.is_file() and sha256(stale) == before[name]:
+                        stale.unlink()
         except OSError as error:
             raise cannot_write(error, self.folder) from error
 
