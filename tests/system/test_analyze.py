@@ -252,3 +252,29 @@ def test_who_holds_the_lock_is_named_and_a_dead_holder_is_not_waited_for(benchla
 def test_strict_turns_warnings_into_a_refusal(benchlab, drawn_clip, tmp_path) -> None:
     assert benchlab("analyze", drawn_clip, "--out", tmp_path, "--strict").code == 3
     assert benchlab("analyze", drawn_clip, "--out", tmp_path, "--strict", "--marker-span-mm", "180").code == 0
+
+
+def test_a_body_that_rests_has_no_onset(benchlab, tmp_path) -> None:
+    clip = draw_clip(tmp_path / "rest.mp4", np.full(25, 45.0))
+    refused = benchlab("analyze", clip, "--ramp", "0:0.35:2.5")
+    assert refused.code == 3 and "the angle moves by" in refused.err and "--sync" in refused.err
+    late = benchlab("analyze", clip, "--ramp", "0:0.35:2.5", "--sync", "99", "--json")
+    assert any("pressure does not change" in w for w in late.json["videos"][0]["warnings"])
+
+
+def test_an_overlay_of_an_earlier_run_does_not_stay_beside_a_new_one(benchlab, drawn_clip, tmp_path) -> None:
+    assert benchlab("analyze", drawn_clip, "--out", tmp_path, "--overlay").code == 0
+    assert (tmp_path / "trial.overlay.mp4").exists()
+    assert benchlab("analyze", drawn_clip, "--out", tmp_path, "--fit", "pratt").code == 0
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["trial.csv", "trial.h5", "trial.png"]
+
+
+def test_markers_too_close_to_be_told_apart_leave_no_frame_unflagged(benchlab, tmp_path) -> None:
+    clip = draw_clip(tmp_path / "dense.mp4", np.linspace(0, 100, 40), markers=24, marker_radius_px=6.0)
+    done = benchlab("analyze", clip, "--json")
+    if done.code == 3:
+        assert "no actuator found" in done.err
+        return
+    table = pd.read_csv(clip.with_suffix(".csv"))
+    wrong = (table["angle_deg"] - np.linspace(0, 100, 40)).abs() > 3
+    assert not (wrong & table["flag"].isna()).any()
