@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 from benchlab.errors import InputError
+from benchlab.io.files import reason_of
 
 HEAD_BYTES = 4096
 PICTURE_MAGIC: dict[bytes, str] = {
@@ -36,7 +36,7 @@ def read_head(path: Path) -> bytes:
         with path.open("rb") as file:
             return file.read(HEAD_BYTES)
     except OSError as error:
-        raise InputError(f"reading failed: {os.strerror(error.errno or 5).lower()}", file=path) from error
+        raise InputError(f"reading failed: {reason_of(error)}", file=path) from error
 
 
 def picture_codec(head: bytes) -> str | None:

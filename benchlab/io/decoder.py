@@ -17,6 +17,7 @@ from av.video.stream import VideoStream
 
 from benchlab.errors import InputError
 from benchlab.io.container import check_not_text, film_format, read_head, refusal
+from benchlab.io.files import reason_of
 
 FORMATS = (
     "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi,mpegts,mpeg,ogg,gif,flv,asf,mjpeg,h264,hevc,m4v,mpegvideo,ivf,obu,"
@@ -97,7 +98,7 @@ def translated(path: Path, where: str) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        reason = (error.strerror or str(error)).lower()
+        reason = reason_of(error)
         raise InputError(
             f"reading failed: {reason}", file=path, where=where, hint="copy the recording to this machine"
         ) from error

@@ -14,6 +14,15 @@ from pathlib import Path
 from benchlab.errors import InputError, UsageError
 
 
+def reason_of(error: OSError) -> str:
+    """What the system says of an error, in a few words.
+
+    >>> reason_of(FileNotFoundError(2, "No such file or directory"))
+    'no such file or directory'
+    """
+    return (error.strerror or str(error)).lower()
+
+
 def check_regular_file(path: Path) -> os.stat_result:
     """The file's stat, if it is one that may be opened; nothing is opened here, so a FIFO or a device cannot hang us.
 
@@ -24,7 +33,7 @@ def check_regular_file(path: Path) -> os.stat_result:
     except (FileNotFoundError, NotADirectoryError):
         raise UsageError("no such file", file=path, hint="check the path; addresses and streams are not read") from None
     except OSError as error:
-        raise InputError(os.strerror(error.errno or errno.EIO).lower(), file=path) from error
+        raise InputError(reason_of(error), file=path) from error
     if stat.S_ISDIR(found.st_mode):
         raise UsageError("is a folder", file=path, hint="give the file itself")
     if not stat.S_ISREG(found.st_mode):
@@ -45,8 +54,7 @@ def sha256(path: Path) -> str:
 def cannot_write(error: OSError, path: Path) -> InputError:
     """What the disk said, as one line about `path`."""
     hint = "free some space; the old result is unchanged" if error.errno == errno.ENOSPC else None
-    reason = os.strerror(error.errno).lower() if error.errno else str(error)
-    return InputError(f"could not be written: {reason}", file=path, hint=hint)
+    return InputError(f"could not be written: {reason_of(error)}", file=path, hint=hint)
 
 
 @contextmanager
@@ -60,7 +68,7 @@ def written_whole(path: Path) -> Iterator[Path]:
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem[:40]}-", suffix=path.suffix)
         os.close(handle)
     except OSError as error:
-        raise InputError(f"cannot write here: {os.strerror(error.errno or errno.EIO).lower()}", file=path) from error
+        raise InputError(f"cannot write here: {reason_of(error)}", file=path) from error
     temporary = Path(name)
     try:
         yield temporary

@@ -16,6 +16,7 @@ import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -119,7 +120,7 @@ def _plain(value: object) -> object:
         return [_plain(item) for item in value]
     if isinstance(value, np.generic | np.ndarray):
         return _plain(value.tolist())
-    if isinstance(value, Path):
+    if isinstance(value, Path | Fraction):
         return str(value)
     return None if isinstance(value, float) and not math.isfinite(value) else value
 

@@ -18,7 +18,7 @@ from av.video.frame import VideoFrame
 from benchlab.errors import InputError, UsageError
 from benchlab.io.container import picture_codec, read_head
 from benchlab.io.decoder import decoder_limit
-from benchlab.io.files import check_regular_file
+from benchlab.io.files import check_regular_file, reason_of
 from benchlab.io.film_checks import check_rates, check_size
 from benchlab.io.picture_header import picture_orientation, picture_size
 from benchlab.io.planes import PlaneReader, read_tags
@@ -74,7 +74,7 @@ def read_still(path: Path, max_pixels: int) -> Still:
     try:
         data = path.read_bytes()
     except OSError as error:
-        raise InputError(f"reading failed: {(error.strerror or str(error)).lower()}", file=path) from error
+        raise InputError(f"reading failed: {reason_of(error)}", file=path) from error
     size = picture_size(data)
     if size is not None:
         check_size(path, *size, max_pixels)

@@ -107,17 +107,21 @@ def _full_spans(fits: CircleFits, used: np.ndarray) -> FloatArray:
     return np.where(used[:, 0] & used[:, -1], fits.arc_span, np.nan)
 
 
-def _pooled_noise(fits: CircleFits, jitter: float, stills: bool) -> tuple[FloatArray, FloatArray]:
-    """(T,) noise of a marker coordinate in px, and Student's factor that keeps ±2 sd at 95 % for few degrees of freedom."""
+def _pooled_noise(fits: CircleFits, noise_alone: float, stills: bool) -> tuple[FloatArray, FloatArray]:
+    """(T,) noise of a marker coordinate in px, and Student's factor that keeps ±2 sd at 95 % for few degrees of freedom.
+
+    noise_alone: px, for frames that have no degree of freedom within reach.
+    """
     freedom = np.where(np.isfinite(fits.rms), np.maximum(fits.dof, 0), 0).astype(float)
     count = freedom + 3
     squares = np.where(freedom > 0, np.nan_to_num(fits.rms) ** 2 * count, 0.0)
     window = np.ones(1 if stills else min(POOLED_FRAMES, 2 * len(freedom) - 1))
-    pooled = np.convolve(squares, window, mode="same")[: len(freedom)]
-    total = np.convolve(freedom, window, mode="same")[: len(freedom)]
+    centred = slice(len(window) // 2, len(window) // 2 + len(freedom))
+    pooled = np.convolve(squares, window)[centred]
+    total = np.convolve(freedom, window)[centred]
     alone = total < 0.5
     scatter = np.sqrt(pooled / np.where(alone, 1, total))
-    noise = np.where(alone, jitter, scatter)
+    noise = np.where(alone, noise_alone, scatter)
     student = np.where(alone, 1.0, stdtrit(np.maximum(total, 1), 0.97725) / 2)
     return noise, student
 

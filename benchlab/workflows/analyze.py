@@ -73,8 +73,8 @@ def save(analysis: Analysis, settings: AnalyzeSettings, outputs: Outputs) -> dic
                 "outputs_sha256": {p.name: sha256(p) for p in written},
                 "summary": summary,
             },
-            recording={**_plain(vars(analysis.info)), "frames": len(series.time_s)},
-            scale=_plain(vars(analysis.scale)),
+            recording={**vars(analysis.info), "frames": len(series.time_s)},
+            scale=vars(analysis.scale),
             warnings=list(analysis.warnings),
             partial=analysis.partial,
         )
@@ -125,8 +125,3 @@ def _write_overlay(analysis: Analysis, settings: AnalyzeSettings, path: Path) ->
                 if frame.planes is not None:
                     drawn = draw_overlay(display_bgr(frame.planes, info), series, frame.index)
                     writer.write(drawn[: even[1], : even[0]], frame.time_s if np.isfinite(frame.time_s) else None)
-
-
-def _plain(values: dict[str, Any]) -> dict[str, Any]:
-    """Values as JSON knows them."""
-    return {k: v if isinstance(v, int | float | str | bool | type(None)) else str(v) for k, v in values.items()}

@@ -43,7 +43,7 @@ LEAST_MOTION_DEG = 1.0
 
 @dataclass(frozen=True)
 class Analysis:
-    """One analysed recording: what was measured, and where it was written."""
+    """One analysed recording: what was measured, and in which recording."""
 
     source: Path
     info: RecordingInfo

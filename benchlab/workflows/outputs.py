@@ -19,7 +19,7 @@ from typing import Any
 
 import benchlab
 from benchlab.errors import UsageError
-from benchlab.io.files import cannot_write, check_regular_file, sha256
+from benchlab.io.files import cannot_write, check_regular_file, reason_of, sha256
 from benchlab.io.run_file import read_provenance
 
 
@@ -74,9 +74,8 @@ class Outputs:
                 "no such folder", file=self.folder.parent, hint="make it, or choose another --out"
             ) from None
         except OSError as error:
-            reason = os.strerror(error.errno).lower() if error.errno else str(error)
             raise UsageError(
-                f"cannot be used as output folder: {reason}", file=self.folder, hint="choose another --out"
+                f"cannot be used as output folder: {reason_of(error)}", file=self.folder, hint="choose another --out"
             ) from error
         if not os.access(self.folder, os.W_OK | os.X_OK):
             raise UsageError("the output folder is read-only", file=self.folder, hint="choose another --out")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import os
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +13,7 @@ from av.error import FFmpegError
 
 from benchlab.actuator import ShellDesign
 from benchlab.errors import InputError, UsageError
-from benchlab.io.files import written_whole
+from benchlab.io.files import reason_of, written_whole
 from benchlab.io.video_writer import VideoWriter
 from benchlab.vision.picture import FloatArray
 from benchlab.vision.synthetic import Scene, draw_frames
@@ -74,7 +73,7 @@ def make_sample_data(out: Path, seed: int = 1, progress: Progress | None = None)
     try:
         (out / "videos").mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"cannot make this folder: {os.strerror(error.errno or 0).lower()}", file=out) from error
+        raise InputError(f"cannot make this folder: {reason_of(error)}", file=out) from error
     written = []
     for index, clip in enumerate(clips):
         rng = np.random.default_rng([seed, index])

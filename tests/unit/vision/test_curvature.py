@@ -54,6 +54,13 @@ def test_two_sd_cover_as_many_errors_as_they_should(angle_deg: float, n: int, gi
     assert np.median(found.centroid_sd_px) == pytest.approx(noise, rel=0.05)
 
 
+def test_a_short_recording_pools_all_its_frames() -> None:
+    xy = arcs(np.linspace(20, 60, 10))
+    xy[:5] += np.random.default_rng(6).normal(0, 0.2, (5, N, 2))
+    noise = series(xy)[0].centroid_sd_px
+    assert np.ptp(noise) == pytest.approx(0, abs=1e-12) and noise[0] == pytest.approx(0.2 / np.sqrt(2), rel=0.3)
+
+
 def test_three_markers_take_their_noise_from_the_jitter_in_time() -> None:
     rng = np.random.default_rng(1)
     xy = arcs(np.linspace(20, 80, 2000), 3) + rng.normal(0, 0.2, (2000, 3, 2))
