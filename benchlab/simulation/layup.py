@@ -1,0 +1,95 @@
+"""What the shell is laminated from, and which pieces lie where on the flat sheet.
+
+The sheet of half the circumference and half a cell: s in [0, P/2], 0 mid strip; Z in [0, (tw + fw)/2], 0 mid rib.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from benchlab.actuator import ShellDesign
+from benchlab.errors import UsageError
+from benchlab.simulation.laws import Law, StVenantKirchhoff
+
+
+@dataclass(frozen=True)
+class Layup:
+    """Materials and thicknesses (mm) of film, fabric and strip; everything about a shell that is not its cut.
+
+    weld_width_mm: how far the windowed fabric reaches under the strip, from the strip's edge, on either side; None for
+    all the way. The film lies everywhere. moulded: the shell is free of bending stress as a round tube, not flat.
+
+    """
+
+    name: str
+    origin: str
+    film: Law
+    fabric: Law = StVenantKirchhoff()
+    film_thickness_mm: float = 0.3
+    fabric_thickness_mm: float = 0.3
+    strip_thickness_mm: float = 0.3
+    film_under_strip: bool = True
+    weld_width_mm: float | None = 0.0
+    moulded: bool = False
+
+    def __post_init__(self) -> None:
+        for name in ("film_thickness_mm", "fabric_thickness_mm", "strip_thickness_mm"):
+            if not (math.isfinite(value := getattr(self, name)) and value > 0):
+                raise UsageError(f"{name} is {value}", hint="give a positive thickness in mm")
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A rectangle of one material on the quarter cell, (s from, to) and (Z from, to) in mm. Pieces are stacked in order,
+    the inner first."""
+
+    name: str
+    law: Law
+    thickness_mm: float
+    s_mm: tuple[float, float]
+    Z_mm: tuple[float, float]
+
+    def covers(self, s: float, Z: float) -> bool:
+        return self.s_mm[0] < s < self.s_mm[1] and self.Z_mm[0] < Z < self.Z_mm[1]
+
+
+@dataclass(frozen=True)
+class Layer:
+    """One layer of a laminate: z from `bottom_mm` to `top_mm`, outwards, 0 the reference surface."""
+
+    name: str
+    law: Law
+    bottom_mm: float
+    top_mm: float
+
+
+def pieces_of(design: ShellDesign, layup: Layup) -> tuple[Piece, ...]:
+    """The pieces of the quarter cell: film, ribs of fabric, strip."""
+    edge, end = design.strip_width_mm / 2, (design.window_width_mm + design.rib_width_mm) / 2
+    around = design.perimeter_mm / 2
+    welded = 0.0 if layup.weld_width_mm is None else max(0.0, edge - layup.weld_width_mm)
+    film_from = 0.0 if layup.film_under_strip else welded
+    pieces = [
+        Piece("film", layup.film, layup.film_thickness_mm, (film_from, around), (0.0, end)),
+        Piece("rib", layup.fabric, layup.fabric_thickness_mm, (welded, around), (0.0, design.rib_width_mm / 2)),
+    ]
+    if welded < edge:
+        # The windows end at the strip's edge: under the strip the fabric is whole.
+        pieces.append(
+            Piece("weld", layup.fabric, layup.fabric_thickness_mm, (welded, edge), (design.rib_width_mm / 2, end))
+        )
+    pieces.append(Piece("strip", layup.fabric, layup.strip_thickness_mm, (0.0, edge), (0.0, end)))
+    return tuple(pieces)
+
+
+def laminate_at(pieces: Sequence[Piece], s: float, Z: float) -> tuple[Layer, ...]:
+    """The layers at a point, inner first, centred on the reference surface."""
+    here = [piece for piece in pieces if piece.covers(s, Z)]
+    z = -sum(piece.thickness_mm for piece in here) / 2
+    layers = []
+    for piece in here:
+        layers.append(Layer(piece.name, piece.law, z, z + piece.thickness_mm))
+        z += piece.thickness_mm
+    return tuple(layers)
