@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from benchlab.actuator import ShellDesign
 from benchlab.errors import UsageError
@@ -26,7 +26,7 @@ class Layup:
     name: str
     origin: str
     film: Law
-    fabric: Law = StVenantKirchhoff()
+    fabric: StVenantKirchhoff = field(default_factory=StVenantKirchhoff)
     film_thickness_mm: float = 0.3
     fabric_thickness_mm: float = 0.3
     strip_thickness_mm: float = 0.3
