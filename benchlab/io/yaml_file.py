@@ -1,0 +1,208 @@
+"""Settings as YAML 1.2 files: read strictly against a pydantic model, written whole.
+
+Refused: duplicate and unknown keys, NaN and infinity, aliases, merge keys, tags that make objects, several documents, deep nesting, and
+files that are large or not regular. All that a model finds wrong is said at once, each with its line.
+"""
+
+from __future__ import annotations
+
+import codecs
+import difflib
+import io
+import json
+import math
+import warnings
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+from ruamel.yaml import YAML
+from ruamel.yaml.error import MantissaNoDotYAML1_1Warning, MarkedYAMLError, YAMLError
+from ruamel.yaml.events import AliasEvent, CollectionEndEvent, CollectionStartEvent, DocumentStartEvent, ScalarEvent
+from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
+
+from benchlab.errors import InputError
+from benchlab.io.files import cannot_write, check_regular_file, written_whole
+
+MAX_BYTES = 1_000_000
+MAX_DEPTH = 32
+MAX_ERRORS = 12
+"""Limits: bytes in a file, nesting of its lists and mappings, errors that are spelt out."""
+
+Place = tuple[str | int, ...]
+Model = TypeVar("Model", bound=BaseModel)
+
+
+class Document(BaseModel):
+    """What the models of files inherit: strict types, no unknown keys, no NaN, frozen."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+def read_document(path: Path, model: type[Model]) -> Model:
+    """The file as an instance of `model`; YAML lists become the model's tuples, whole numbers its floats.
+
+    Raises UsageError for a missing file, InputError naming line, key, value and remedy of everything that is wrong.
+    """
+    text = _text(path)
+    lines: dict[Place, int] = {}
+    data = _parsed(path, text, lines)
+    try:
+        return model.model_validate_json(json.dumps(data), strict=True)
+    except ValidationError as error:
+        raise _refused(path, error, lines, _known_keys(model)) from None
+
+
+def write_document(path: Path, document: dict[str, Any], header_comment: str = "") -> None:
+    """Write plain data (dict, list, str, bool, int, float, None) as YAML 1.2, the comment's lines before it.
+
+    The file is there whole or not at all. Raises ValueError for data that would not read back the same, InputError
+    where the disk refuses.
+    """
+    yaml: Any = YAML(typ="safe", pure=True)
+    yaml.default_flow_style = False
+    yaml.allow_unicode = True
+    yaml.sort_base_mapping_type_on_output = False
+    yaml.width = 100
+    body = io.StringIO()
+    yaml.dump(document, body)
+    if _loaded(body.getvalue()) != document:
+        raise ValueError("this document does not read back from YAML as it was written")
+    comment = "".join(f"# {line}".rstrip() + "\n" for line in header_comment.splitlines())
+    with written_whole(path) as temporary:
+        try:
+            temporary.write_text(comment + body.getvalue(), encoding="utf-8", newline="\n")
+        except OSError as error:
+            raise cannot_write(error, path) from error
+
+
+def _text(path: Path) -> str:
+    if (size := check_regular_file(path).st_size) > MAX_BYTES:
+        raise InputError(f"{size / 1e6:.1f} MB, more than the limit of {MAX_BYTES / 1e6:g} MB for YAML", file=path)
+    try:
+        raw = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"could not be read: {error.strerror or error}", file=path) from error
+    wide = raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+    try:
+        return raw.decode("utf-16" if wide else "utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError("not readable as UTF-8 text", file=path, hint="save it as UTF-8") from None
+
+
+def _loaded(text: str) -> Any:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", MantissaNoDotYAML1_1Warning)
+        return YAML(typ="safe", pure=True).load(text)
+
+
+def _parsed(path: Path, text: str, lines: dict[Place, int]) -> Any:
+    """The data of a document; `lines` is filled with the line of every key and item."""
+    try:
+        _check_events(path, text)
+        node = YAML(typ="safe", pure=True).compose(text)
+        if node is None:
+            raise InputError("holds no data", file=path, hint="write `key: value` lines")
+        _note_lines(path, node, (), lines)
+        data = _loaded(text)
+    except MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        what = str(error.problem or error.context).split("\n", maxsplit=1)[0]
+        raise InputError(
+            f"not YAML: {what}",
+            file=path,
+            where=f"line {mark.line + 1}" if mark else None,
+            hint="indent with blanks, write each key once as `key: value`, and quote text with special signs",
+        ) from None
+    except (YAMLError, ValueError, OverflowError) as error:
+        raise InputError(f"not YAML: {str(error).splitlines()[0]}", file=path) from None
+    _check_plain(path, data, (), lines)
+    return data
+
+
+def _check_events(path: Path, text: str) -> None:
+    depth = 0
+    for event in YAML(typ="safe", pure=True).parse(io.StringIO(text)):
+        where = f"line {event.start_mark.line + 1}"
+        if isinstance(event, AliasEvent) or getattr(event, "anchor", None):
+            raise InputError("anchors and aliases (& and *) are not read", file=path, where=where, hint="write it out")
+        if isinstance(event, DocumentStartEvent) and event.version not in (None, (1, 2)):
+            raise InputError("is not YAML 1.2", file=path, where=where, hint="remove the %YAML line")
+        if isinstance(event, ScalarEvent) and event.value == "<<" and not event.style:
+            raise InputError("merge keys (<<) are not read", file=path, where=where, hint="write it out")
+        depth += isinstance(event, CollectionStartEvent) - isinstance(event, CollectionEndEvent)
+        if depth > MAX_DEPTH:
+            raise InputError(f"nested deeper than {MAX_DEPTH} levels", file=path, where=where)
+
+
+def _note_lines(path: Path, node: Node, place: Place, lines: dict[Place, int]) -> None:
+    lines.setdefault(place, node.start_mark.line + 1)
+    if isinstance(node, MappingNode):
+        for key, value in node.value:
+            line = key.start_mark.line + 1
+            if not isinstance(key, ScalarNode) or not str(key.tag).endswith(":str"):
+                shown = key.value if isinstance(key, ScalarNode) else "a list or mapping"
+                raise InputError(f"key {shown!r} is not text", file=path, where=f"line {line}", hint="quote it")
+            lines[(*place, key.value)] = line
+            _note_lines(path, value, (*place, key.value), lines)
+    elif isinstance(node, SequenceNode):
+        for index, item in enumerate(node.value):
+            _note_lines(path, item, (*place, index), lines)
+
+
+def _check_plain(path: Path, value: Any, place: Place, lines: dict[Place, int]) -> None:
+    where = f"line {lines.get(place, 1)}"
+    if isinstance(value, dict):
+        for key, item in value.items():
+            _check_plain(path, item, (*place, key), lines)
+    elif isinstance(value, list):
+        for index, item in enumerate(value):
+            _check_plain(path, item, (*place, index), lines)
+    elif isinstance(value, float) and not math.isfinite(value):
+        raise InputError(f"{_name(place)} is {value}", file=path, where=where, hint="give a finite number")
+    elif value is not None and not isinstance(value, (str, bool, int, float)):
+        what = f"{_name(place)} reads as a {type(value).__name__}, {value}"
+        raise InputError(what, file=path, where=where, hint="quote it if text is meant")
+
+
+def _name(place: Place) -> str:
+    """`film.coefficients_MPa.C10`, `steps[2].to_MPa`."""
+    text = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in place)
+    return text.removeprefix(".") or "the document"
+
+
+def _refused(path: Path, error: ValidationError, lines: dict[Place, int], known: set[str]) -> InputError:
+    found = [_one(dict(e), lines, known) for e in error.errors(include_url=False)]
+    if len(found) == 1:
+        line, what, remedy = found[0]
+        return InputError(what, file=path, where=line, hint=remedy)
+    shown = [f"{line}: {what} ({remedy})" for line, what, remedy in found[:MAX_ERRORS]]
+    if len(found) > MAX_ERRORS:
+        shown.append(f"and {len(found) - MAX_ERRORS} more")
+    return InputError(f"{len(found)} things are wrong: " + "; ".join(shown), file=path, hint=None)
+
+
+def _one(error: dict[str, Any], lines: dict[Place, int], known: set[str]) -> tuple[str, str, str]:
+    """Line, what is wrong, and the remedy."""
+    place: Place = ()
+    for part in error["loc"]:  # parts that stand for a choice of models, not for a key, are left out
+        if (*place, part) in lines:
+            place = (*place, part)
+    line = f"line {lines.get(place, 1)}"
+    kind, value, message = error["type"], error["input"], str(error["msg"])
+    if kind == "missing":
+        inside = f" in {_name(place)}" if place else ""
+        return line, f"{error['loc'][-1]} is missing{inside}", f"add `{error['loc'][-1]}:`"
+    if kind == "extra_forbidden":
+        close = difflib.get_close_matches(str(place[-1]), sorted(known), n=1)
+        return line, f"unknown key {_name(place)}", f"did you mean {close[0]}?" if close else "remove it"
+    shown = json.dumps(value, ensure_ascii=False, default=str)
+    shown = shown if len(shown) <= 60 else shown[:57] + "..."
+    wish = message.removeprefix("Input should be ").removeprefix("Value error, ")
+    return line, f"{_name(place)} is {shown}", f"give {wish}" if wish != message and "Value" not in message else wish
+
+
+def _known_keys(model: type[BaseModel]) -> set[str]:
+    """Names of all fields of a model and of the models in it."""
+    schema = model.model_json_schema()
+    return {name for part in (schema, *schema.get("$defs", {}).values()) for name in part.get("properties", {})}
