@@ -7,6 +7,15 @@ from dataclasses import dataclass
 
 from benchlab.errors import UsageError
 
+SYMBOLS = {
+    "strip_width_mm": "slw",
+    "window_width_mm": "tw",
+    "rib_width_mm": "fw",
+    "perimeter_mm": "slw + wl",
+    "length_mm": "al",
+}
+"""The paper's symbol of each field of a design."""
+
 
 @dataclass(frozen=True)
 class ShellDesign:
@@ -19,6 +28,9 @@ class ShellDesign:
     >>> design = ShellDesign(strip_width_mm=10, window_width_mm=3)
     >>> round(design.diameter_mm, 2), design.window_length_mm, round(design.window_count, 1)
     (12.73, 30.0, 35.6)
+
+    Raises UsageError for a design that cannot be made: a length that is not positive, a strip as wide as the perimeter,
+    a window that is longer than the actuator.
     """
 
     strip_width_mm: float
@@ -28,18 +40,21 @@ class ShellDesign:
     length_mm: float = 180.0
 
     def __post_init__(self) -> None:
-        for name, value in vars(self).items():
+        for field, value in vars(self).items():
             if not (math.isfinite(value) and value > 0):
-                raise UsageError(f"{name} is {value}", hint="give a positive length in mm")
+                raise UsageError(f"{field} ({SYMBOLS[field]}) is {value:g}", hint="give a positive length in mm")
         if self.strip_width_mm >= self.perimeter_mm:
             raise UsageError(
-                f"strip_width_mm {self.strip_width_mm} leaves no window in a perimeter of {self.perimeter_mm} mm",
-                hint="make the strip narrower",
+                f"strip_width_mm (slw) is {self.strip_width_mm:g} and leaves no window in the perimeter_mm of "
+                f"{self.perimeter_mm:g}",
+                hint="make the strip narrower than the perimeter, which is slw + wl",
             )
-        if self.window_width_mm + 2 * self.rib_width_mm > self.length_mm:
+        longest = self.length_mm - 2 * self.rib_width_mm
+        if self.window_width_mm > longest * (1 + 1e-12):
             raise UsageError(
-                f"a window of {self.window_width_mm} mm and its ribs do not fit in {self.length_mm} mm",
-                hint="make the window narrower",
+                f"window_width_mm (tw) is {self.window_width_mm:g}; between two ribs of {self.rib_width_mm:g} in a "
+                f"length_mm (al) of {self.length_mm:g} there is room for {max(longest, 0):g}",
+                hint="make the window or the ribs narrower, or the actuator longer",
             )
 
     @property
