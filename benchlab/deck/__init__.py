@@ -1,0 +1,11 @@
+"""Finite-element models of the whole tube, for checking benchlab in another engine.
+
+grid        lines of a mesh graded to the borders of the layers
+tube        design + layup -> nodes, eight-node shells, sections, sets: half a tube with a stiff cap
+materials   a law as the material cards of Abaqus and CalculiX
+sections    a laminate as shell section cards
+calculix    the model as a CalculiX deck
+abaqus      the model as an Abaqus deck
+heading     what a deck says of itself
+angles      displacements of rib mid-planes -> their rotation
+"""
