@@ -1,6 +1,6 @@
-"""What a pressure, a length or a time may be written in, and how a column's name says so.
+"""What a pressure, a length, a force or a time may be written in, and how a column's name says so.
 
-Inside benchlab: MPa, mm, s. Everything else is converted at the edge, by the factors below.
+Inside benchlab: MPa, mm, N, s. Everything else is converted at the edge, by the factors below.
 """
 
 from __future__ import annotations
@@ -27,9 +27,10 @@ UNITS: dict[str, dict[str, float]] = {
         "psig": 0.006894757293168361,
     },
     "length": {"mm": 1.0, "cm": 10.0, "m": 1000.0, "µm": 1e-3, "in": 25.4},
+    "force": {"N": 1.0, "kN": 1000.0, "mN": 1e-3, "lbf": 4.4482216152605, "kgf": 9.80665, "gf": 9.80665e-3},
     "time": {"s": 1.0, "sec": 1.0, "ms": 1e-3, "µs": 1e-6, "min": 60.0},
 }
-"""Factor of each unit to MPa, mm and s, by quantity. `g` marks a gauge pressure; absolute ones are not converted."""
+"""Factor of each unit to MPa, mm, N and s, by quantity. `g` marks a gauge pressure; absolute ones are not converted."""
 
 _BRACKETED = re.compile(r"^(?P<name>.*?)\s*[(\[{](?P<unit>[^()\[\]{}]*)[)\]}]\s*$", re.DOTALL)
 _SEPARATED = re.compile(r"^(?P<name>.*?)\s*(?:[_\s/,]|\bin\b)\s*(?P<unit>[A-Za-zµμ]+)\s*$", re.DOTALL)
@@ -47,7 +48,7 @@ def known_unit(text: str) -> tuple[str, str] | None:
     for quantity, table in UNITS.items():
         if text in table:
             return quantity, text
-    if text in ("mPa", "Mbar", "MBar"):
+    if text in ("mPa", "Mbar", "MBar", "MN"):
         return None
     for quantity, table in UNITS.items():
         for unit in table:
@@ -72,6 +73,15 @@ def to_mm(value: ArrayLike, unit: str) -> FloatArray:
     50.8
     """
     return _converted(value, unit, "length")
+
+
+def to_N(value: ArrayLike, unit: str) -> FloatArray:
+    """Force in N, same shape as `value`. InputError for a unit that is not a force.
+
+    >>> float(to_N(2.0, "kN"))
+    2000.0
+    """
+    return _converted(value, unit, "force")
 
 
 def to_s(value: ArrayLike, unit: str) -> FloatArray:

@@ -11,7 +11,7 @@ from benchlab.units import known_unit, parse_column, to_mm, to_MPa, to_s
 
 def test_the_examples_in_the_docstrings_hold():
     result = doctest.testmod(benchlab.units)
-    assert result.attempted == 5
+    assert result.attempted == 6
     assert result.failed == 0
 
 
