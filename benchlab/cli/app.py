@@ -12,6 +12,7 @@ import click
 import benchlab
 from benchlab.cli.analyze import analyze
 from benchlab.cli.calibrate import calibrate
+from benchlab.cli.cut import cut
 from benchlab.cli.sample_data import sample_data
 from benchlab.errors import BenchlabError, printable
 
@@ -34,6 +35,7 @@ def cli(debug: bool) -> None:
 
 cli.add_command(analyze)
 cli.add_command(calibrate)
+cli.add_command(cut)
 cli.add_command(sample_data)
 
 
