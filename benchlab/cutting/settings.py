@@ -9,6 +9,9 @@ from benchlab.actuator import ShellDesign
 from benchlab.errors import UsageError
 
 MOST_WINDOWS = 10_000
+SMALLEST_MM, LARGEST_MM = 0.1, 10_000.0
+"""What a laser can cut at all: the narrowest rib, window or strip, and the longest side of a part."""
+
 HOLE_TO_EDGE = 1.5
 """From the centre of an alignment hole to any edge, in its diameters: one diameter of material stays around it."""
 
@@ -49,6 +52,7 @@ class CutSettings:
 
 def check_cut(design: ShellDesign, settings: CutSettings) -> None:
     """Raises UsageError, with value, limit and remedy, for a design that cannot be cut with these settings."""
+    _check_sizes(design, settings)
     if design.whole_windows > MOST_WINDOWS:
         raise UsageError(
             f"the design has {design.whole_windows} windows; up to {MOST_WINDOWS} are drawn",
@@ -72,6 +76,30 @@ def check_cut(design: ShellDesign, settings: CutSettings) -> None:
         )
 
 
+def _check_sizes(design: ShellDesign, settings: CutSettings) -> None:
+    for name, value in _widths(design).items():
+        if value < SMALLEST_MM:
+            raise UsageError(
+                f"the {name} is {value:g} mm; a laser cuts from {SMALLEST_MM:g} mm on",
+                hint="lengths are in mm; change the design",
+            )
+    longest = max(design.length_mm + 2 * settings.cap_mm + 2 * settings.tab_mm, design.perimeter_mm)
+    if longest > LARGEST_MM:
+        raise UsageError(
+            f"a part would be {longest:g} mm long; up to {LARGEST_MM:g} mm are drawn",
+            hint="lengths are in mm; make al, the perimeter or --cap-mm smaller",
+        )
+
+
+def _widths(design: ShellDesign) -> dict[str, float]:
+    return {
+        "rib width fw": design.rib_width_mm,
+        "window width tw": design.window_width_mm,
+        "window length wl": design.window_length_mm,
+        "strip width slw": design.strip_width_mm,
+    }
+
+
 def _check_weld(design: ShellDesign, settings: CutSettings) -> None:
     weld, most = settings.weld_of(design), design.strip_width_mm / 2
     if not 0 < weld <= most:
@@ -82,16 +110,10 @@ def _check_weld(design: ShellDesign, settings: CutSettings) -> None:
 
 
 def _check_kerf(design: ShellDesign, settings: CutSettings) -> None:
-    limits = {
-        "ribs (fw)": design.rib_width_mm,
-        "width of the windows (tw)": design.window_width_mm,
-        "length of the windows (wl)": design.window_length_mm,
-        "strip (slw)": design.strip_width_mm,
-        "alignment holes": settings.hole_mm or math.inf,
-    }
+    limits = {**_widths(design), "hole diameter": settings.hole_mm or math.inf}
     narrowest = min(limits, key=lambda name: limits[name])
     if settings.kerf_mm >= limits[narrowest]:
         raise UsageError(
-            f"kerf_mm is {settings.kerf_mm:g}, and the {narrowest} measure {limits[narrowest]:g} mm",
+            f"kerf_mm is {settings.kerf_mm:g}, the {narrowest} is {limits[narrowest]:g} mm",
             hint="the beam must be narrower than what it cuts; a usual kerf is 0.1 to 0.3",
         )

@@ -120,16 +120,20 @@ def test_the_sheet_closes_under_the_strip() -> None:
 @pytest.mark.parametrize(
     ("design", "cut", "words"),
     [
-        (PAPER, {"kerf_mm": 2}, ["kerf_mm is 2", "ribs (fw)", "2 mm", "narrower"]),
-        (ShellDesign(10, 1), {"kerf_mm": 1.2}, ["kerf_mm is 1.2", "windows (tw)", "1 mm"]),
-        (ShellDesign(0.5, 3), {"kerf_mm": 0.5}, ["kerf_mm is 0.5", "strip (slw)"]),
-        (ShellDesign(39.5, 3), {"kerf_mm": 0.6}, ["length of the windows (wl)", "0.5 mm"]),
-        (PAPER, {"kerf_mm": 0.5, "hole_mm": 0.4}, ["alignment holes", "0.4 mm"]),
+        (PAPER, {"kerf_mm": 2}, ["kerf_mm is 2", "rib width fw is 2 mm", "narrower"]),
+        (ShellDesign(10, 1), {"kerf_mm": 1.2}, ["kerf_mm is 1.2", "window width tw is 1 mm"]),
+        (ShellDesign(0.5, 3), {"kerf_mm": 0.5}, ["kerf_mm is 0.5", "strip width slw"]),
+        (ShellDesign(39.5, 3), {"kerf_mm": 0.6}, ["window length wl is 0.5 mm"]),
+        (PAPER, {"kerf_mm": 0.5, "hole_mm": 0.4}, ["hole diameter is 0.4 mm"]),
         (PAPER, {"weld_mm": 5.1}, ["weld_mm is 5.1", "at most", "5 mm"]),
         (PAPER, {"weld_mm": 0}, ["weld_mm is 0", "more than 0"]),
         (PAPER, {"hole_mm": 7}, ["hole_mm is 7", "40 mm", "up to 6.67", "with 0"]),
         (PAPER, {"corner_radius_mm": 1.6}, ["corner_radius_mm is 1.6", "3 x 30", "up to 1.5"]),
-        (ShellDesign(10, 0.001, 0.001), {}, ["89999 windows", "10000"]),
+        (ShellDesign(10, 0.1, 0.1, 40, 5000), {}, ["24999 windows", "10000"]),
+        (ShellDesign(10, 1e-300, 1e-300, 40, 1e30), {}, ["rib width fw is 1e-300 mm", "0.1 mm"]),
+        (ShellDesign(39.95, 3), {}, ["window length wl is 0.05 mm", "0.1 mm"]),
+        (PAPER, {"cap_mm": 5000}, ["10192 mm long", "up to 10000", "--cap-mm"]),
+        (ShellDesign(10, 3, 2, 20_000), {}, ["20000 mm long", "perimeter"]),
     ],
 )
 def test_what_cannot_be_cut(design: ShellDesign, cut: dict[str, float], words: list[str]) -> None:
