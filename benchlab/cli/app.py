@@ -13,6 +13,7 @@ import benchlab
 from benchlab.cli.analyze import analyze
 from benchlab.cli.calibrate import calibrate
 from benchlab.cli.cut import cut
+from benchlab.cli.export import export
 from benchlab.cli.sample_data import sample_data
 from benchlab.errors import BenchlabError, printable
 
@@ -36,6 +37,7 @@ def cli(debug: bool) -> None:
 cli.add_command(analyze)
 cli.add_command(calibrate)
 cli.add_command(cut)
+cli.add_command(export)
 cli.add_command(sample_data)
 
 

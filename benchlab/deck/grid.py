@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,7 @@ def lines(borders: Iterable[float], size: float) -> FloatArray:
     [0.0, 1.0, 2.0, 3.0]
     """
     at = sorted({round(float(b), 9) for b in borders})
-    pieces = [np.linspace(a, b, max(1, math.ceil((b - a) / size - 1e-9)) + 1)[:-1] for a, b in zip(at, at[1:])]
+    pieces = [np.linspace(a, b, max(1, math.ceil((b - a) / size - 1e-9)) + 1)[:-1] for a, b in pairwise(at)]
     return np.concatenate([*pieces, [at[-1]]])
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from benchlab.deck.grid import IntArray
 from benchlab.deck.materials import material_card
+from benchlab.deck.solid import Solid
 from benchlab.deck.tube import Tube
 from benchlab.simulation.laws import Law, StVenantKirchhoff
 
@@ -29,9 +30,7 @@ class Materials:
         return self.cards.setdefault(key, f"{kind}_{len(self.cards) + 1}")
 
     def lines(self) -> list[str]:
-        cards = (
-            [f"*MATERIAL, NAME={name}", *material_card(law, bulk)] for (law, bulk), name in self.cards.items()
-        )
+        cards = ([f"*MATERIAL, NAME={name}", *material_card(law, bulk)] for (law, bulk), name in self.cards.items())
         return [line for card in cards for line in card]
 
 
@@ -73,3 +72,25 @@ def mesh_lines(tube: Tube, quad: str, triangle: str) -> list[str]:
     for name, numbers in tube.node_sets.items():
         lines += set_lines("NSET", name, numbers)
     return lines
+
+
+def solid_lines(solid: Solid, bulk_over_shear: float) -> list[str]:
+    """Nodes, elements, sets, materials and sections of solids; LOADED has pressure on its first face."""
+    lines = ["*NODE"]
+    lines += [f"{k}, {x:.9g}, {y:.9g}, {z:.9g}" for k, (x, y, z) in enumerate(solid.nodes_mm, start=1)]
+    for kind, elements, first in (("C3D20R", solid.bricks, 1), ("C3D15", solid.wedges, len(solid.bricks) + 1)):
+        lines.append(f"*ELEMENT, TYPE={kind}")
+        for number, row in enumerate(elements, start=first):
+            lines += [f"{number}, {', '.join(map(str, row[:10]))},", ", ".join(map(str, row[10:]))]
+    lines += set_lines("ELSET", "CAP", solid.cap) + set_lines("ELSET", "LOADED", solid.loaded)
+    for name, numbers in solid.node_sets.items():
+        lines += set_lines("NSET", name, numbers)
+    materials, cards = Materials(), []
+    for law, numbers in solid.laws.items():
+        name = materials.name(law, bulk_over_shear)
+        cards += [
+            *set_lines("ELSET", f"LAYERS_{name}", numbers),
+            f"*SOLID SECTION, ELSET=LAYERS_{name}, MATERIAL={name}",
+        ]
+    cards.append(f"*SOLID SECTION, ELSET=CAP, MATERIAL={materials.name(CAP_LAW, 0)}")
+    return lines + materials.lines() + cards

@@ -104,7 +104,8 @@ def tube_of(design: ShellDesign, layup: Layup, extent: Extent, around_mm: float 
     for number, (at, to) in enumerate(zip(mid_s, fold), start=1):
         laminates.setdefault(laminate_at(pieces, at, to), []).append(number)
     sections = tuple(
-        Section(f"LAMINATE_{k}", layers, np.array(found)) for k, (layers, found) in enumerate(laminates.items(), start=1)
+        Section(f"LAMINATE_{k}", layers, np.array(found))
+        for k, (layers, found) in enumerate(laminates.items(), start=1)
     )
     film = min(section.thickness_mm for section in sections)
     rim = np.flatnonzero(v == v.max())[np.argsort(u[v == v.max()])]
@@ -130,11 +131,11 @@ def _stations(design: ShellDesign, extent: Extent) -> tuple[FloatArray, FloatArr
     """z of the rib mid-planes, and of all borders between rib, window and ends."""
     rib, window, cell = design.rib_width_mm, design.window_width_mm, design.window_width_mm + design.rib_width_mm
     count = extent.cells + (0 if extent.from_window else 1)
-    ribs = np.arange(count) * cell + (cell / 2 if extent.from_window else 0.0)
+    ribs = np.array([(k + (0.5 if extent.from_window else 0)) * cell for k in range(count)], dtype=np.float64)
     borders = [0.0, *(ribs - rib / 2), *(ribs + rib / 2), *ribs, ribs[-1] + rib / 2 + extent.margin_mm]
     if extent.from_window:
         borders.append(window / 2)
-    return ribs, np.array([b for b in borders if b >= 0])
+    return ribs, np.array([b for b in borders if b >= 0], dtype=float)
 
 
 def _cap(
