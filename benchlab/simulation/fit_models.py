@@ -53,7 +53,7 @@ def _solve_polynomial(name: str) -> Solver:
         start = np.zeros(len(terms))
         start[0] = least / 2
         values = start + free @ _least_squares(X @ free, stress - X @ start, weights)
-        note = f"the best {name} law has no positive initial modulus: it is held at {3 * least:.2g} MPa, so the law does not suit these data"
+        note = f"the best {name} law has no positive initial modulus: it is held at {3 * least:.2g} MPa and does not suit the data"
         return Solution(_polynomial(terms, values), terms, values, X, (note,))
 
     return solve

@@ -19,6 +19,9 @@ CONFIDENCE = 0.95
 SEPARABLE = 30.0
 """Condition number of the scaled columns above which coefficients are said not to be separable (Belsley, Kuh and Welsch 1980)."""
 
+LEAST_DEGREES = 2.0
+"""Degrees of freedom that a single curve is always granted; where a law misses the curve by a smooth wave there are no more."""
+
 
 @dataclass(frozen=True)
 class Precision:
@@ -43,17 +46,21 @@ def precision(J: FloatArray, residual: FloatArray, sizes: Sequence[int]) -> Prec
     n, p = J.shape
     rho = _neighbour_correlation(residual, sizes, p)
     effective = max(1.0, n * (1 - rho) / (1 + rho))
-    bread = np.linalg.pinv(J.T @ (weights[:, None] * J), rcond=1e-14, hermitian=True)
+    scale = np.linalg.norm(np.sqrt(weights)[:, None] * J, axis=0)
+    scale = np.where(scale > 0, scale, 1.0)
+    J = J / scale
+    bread = _inverse_square(np.sqrt(weights)[:, None] * J)
     if len(sizes) > 1:
         ends = np.cumsum(sizes)[:-1]
         scores = [part.sum(0) for part in np.split(weights[:, None] * residual[:, None] * J, ends)]
         covariance = bread @ sum(np.outer(s, s) for s in scores) @ bread * len(sizes) / (len(sizes) - 1)
         degrees = float(len(sizes) - 1)
     else:
-        degrees = max(1.0, effective - p)
-        variance = float(residual @ residual) / n * effective / degrees
-        covariance = variance * n / effective * bread
-    half = student.ppf((1 + CONFIDENCE) / 2, degrees) * np.sqrt(np.clip(np.diag(covariance), 0, None))
+        worth = max(effective, p + LEAST_DEGREES)
+        degrees = worth - p
+        variance = float(residual @ residual) / n * worth / degrees
+        covariance = variance * n / worth * bread
+    half = student.ppf((1 + CONFIDENCE) / 2, degrees) * np.sqrt(np.clip(np.diag(covariance), 0, None)) / scale
     return Precision(half, rho, effective, degrees)
 
 
@@ -73,6 +80,13 @@ def inseparable(J: FloatArray, sizes: Sequence[int]) -> tuple[float, NDArray[np.
     shares = (Vt / s[:, None]) ** 2
     worst = shares[-1] / shares.sum(0)
     return condition, np.flatnonzero(worst > 0.5) if condition > SEPARABLE else np.array([], dtype=np.intp)
+
+
+def _inverse_square(columns: FloatArray) -> FloatArray:
+    """(XᵀX)⁻¹ by singular values, of which none is left out: what cannot be told apart gets a large variance."""
+    _, s, Vt = np.linalg.svd(columns, full_matrices=False)
+    scaled = Vt / np.maximum(s, np.finfo(float).tiny ** 0.25)[:, None]
+    return scaled.T @ scaled
 
 
 def _neighbour_correlation(residual: FloatArray, sizes: Sequence[int], p: int) -> float:
