@@ -31,8 +31,9 @@ from benchlab.errors import UsageError, printable
 )
 @click.option(
     "--elements",
-    type=click.Choice(["solid", "shell"]),
-    help="Solids layer upon layer (C3D20R, CalculiX alone) or shells (S8R; S4R in Abaqus). [default: solid in CalculiX]",
+    type=click.Choice(["solid", "shell", "sheets"]),
+    help="Solids layer upon layer (C3D20R), shells of laminates (S8R; S4R in Abaqus), or a shell for each layer on shared nodes "
+    "(S8R). [default: solid in CalculiX, shell in Abaqus]",
 )
 @click.option("--around-mm", type=Finite("MM"), default=1.7, show_default=True, help="Largest element side, around.")
 @click.option(

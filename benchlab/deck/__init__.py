@@ -2,8 +2,10 @@
 
 grid        lines of a mesh graded to the borders of the layers
 tube        design + layup -> nodes, eight-node shells, sections, sets: half a tube with a stiff cap
+sheets      ... with a shell for each layer, on shared nodes
+solid       ... or in solid elements, layer upon layer
 materials   a law as the material cards of Abaqus and CalculiX
-sections    a laminate as shell section cards
+sections    nodes, elements, sets and sections as cards
 calculix    the model as a CalculiX deck
 abaqus      the model as an Abaqus deck
 heading     what a deck says of itself

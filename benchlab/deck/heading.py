@@ -24,6 +24,10 @@ CALCULIX_SHELLS = (
     "CalculiX ties their edges rigidly (knots), so the film cannot thin there; pressure acts on the inner faces, which step",
     "by half the difference of thickness; film laminated on fabric has Poisson's ratio 0.45 instead of 0.5.",
 )
+CALCULIX_SHEETS = (
+    "S8R shells, one for each layer, on shared nodes and all centred on the reference surface: layers lie in one another. Pressure",
+    "acts on the inner face, half a thickness inside of it; film on fabric has Poisson's ratio 0.45 instead of 0.5.",
+)
 CALCULIX_SOLIDS = (
     "C3D20R solids, one element through each layer; the film is continuous, its middle at R, fabric and strip lie outside of",
     "it. Pressure acts on the film's inner face and the cap, which close a volume; it follows the faces.",
@@ -39,11 +43,12 @@ def heading(model: Tube | Solid, last_pressure_MPa: float, engine: str, bulk_ove
     """Lines of the comment at the head of a deck for `engine`, "abaqus" or "calculix"."""
     tube = model if isinstance(model, Tube) else model.tube
     design, layup, extent = tube.design, tube.layup, tube.extent
-    kind = ABAQUS if engine == "abaqus" else CALCULIX_SHELLS if isinstance(model, Tube) else CALCULIX_SOLIDS
+    shells = CALCULIX_SHEETS if tube.overlays else CALCULIX_SHELLS
+    kind = ABAQUS if engine == "abaqus" else shells if isinstance(model, Tube) else CALCULIX_SOLIDS
     laminates = [
         f"  {section.name}: "
         + ", ".join(f"{layer.name} {layer.top_mm - layer.bottom_mm:g} mm" for layer in section.layers)
-        for section in tube.sections
+        for section in (*tube.sections, *tube.overlays)
     ]
     return [
         f"benchlab {benchlab.__version__}: {design.name}, layup {_plain(layup.name)}, 0 to {last_pressure_MPa:g} MPa",

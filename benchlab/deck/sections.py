@@ -37,10 +37,10 @@ class Materials:
 def section_lines(tube: Tube, bulk_over_shear: float, bonded_bulk_over_shear: float) -> list[str]:
     """Materials, then a section card for each laminate and the cap; element sets must have been written before."""
     materials, cards = Materials(), []
-    for section in tube.sections:
+    for section in (*tube.sections, *tube.overlays):
         if len(section.layers) == 1:
             (layer,) = section.layers
-            name = materials.name(layer.law, bulk_over_shear)
+            name = materials.name(layer.law, bonded_bulk_over_shear if section.bonded else bulk_over_shear)
             cards += [f"*SHELL SECTION, ELSET={section.name}, MATERIAL={name}", f"{section.thickness_mm:.9g}"]
             continue
         cards.append(f"*SHELL SECTION, ELSET={section.name}, COMPOSITE")
@@ -66,7 +66,7 @@ def mesh_lines(tube: Tube, quad: str, triangle: str) -> list[str]:
         lines.append(f"*ELEMENT, TYPE={kind}")
         lines += [f"{k}, {', '.join(map(str, row))}" for k, row in enumerate(elements, start=first)]
     groups = {"WALL": tube.wall, "CAP": tube.cap, "CAP_LOADED": tube.cap_loaded}
-    groups |= {section.name: section.elements for section in tube.sections}
+    groups |= {section.name: section.elements for section in (*tube.sections, *tube.overlays)}
     for name, numbers in groups.items():
         lines += set_lines("ELSET", name, numbers)
     for name, numbers in tube.node_sets.items():

@@ -40,11 +40,12 @@ class Extent:
 
 @dataclass(frozen=True)
 class Section:
-    """Elements (numbers from 1) of one laminate, the inner layer first."""
+    """Elements (numbers from 1) of one laminate, the inner layer first. bonded: the elements share their nodes with others."""
 
     name: str
     layers: tuple[Layer, ...]
     elements: IntArray
+    bonded: bool = False
 
     @property
     def thickness_mm(self) -> float:
@@ -54,7 +55,8 @@ class Section:
 @dataclass(frozen=True)
 class Tube:
     """Nodes (n, 3) in mm, numbered from 1; quads (m, 8) and triangles (k, 6) of node numbers, elements numbered in that
-    order from 1; sections of the wall; cap elements; node sets; z of the rib mid-planes, in the order of RIB_001, ...
+    order from 1; sections of the wall; cap elements; node sets; z of the rib mid-planes, in the order of RIB_001, ...;
+    overlays: sections of further elements on nodes of the wall.
     """
 
     design: ShellDesign
@@ -69,6 +71,7 @@ class Tube:
     cap_thickness_mm: float
     node_sets: dict[str, IntArray]
     rib_z_mm: FloatArray
+    overlays: tuple[Section, ...] = ()
 
     @property
     def wall(self) -> IntArray:

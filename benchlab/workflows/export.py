@@ -13,6 +13,7 @@ from benchlab.actuator import ShellDesign
 from benchlab.deck.abaqus import abaqus_deck, cut_in_four
 from benchlab.deck.calculix import calculix_deck
 from benchlab.deck.heading import heading
+from benchlab.deck.sheets import sheets_of
 from benchlab.deck.solid import Solid, solid_of
 from benchlab.deck.tube import Extent, Tube, tube_of
 from benchlab.errors import UsageError
@@ -21,12 +22,12 @@ from benchlab.io.layup_file import read_layup
 from benchlab.simulation.layup import Layup
 
 ENGINES = ("calculix", "abaqus")
-ELEMENTS = ("solid", "shell")
+ELEMENTS = ("solid", "shell", "sheets")
 
 
 @dataclass(frozen=True)
 class ExportSettings:
-    """cells: N from mid rib, None for half the actuator. elements: "shell" or "solid" (None: as suits the engine).
+    """cells: N from mid rib, None for half the actuator. elements: "solid", "shell" or "sheets" (None: as suits the engine).
     around_mm, along_mm: largest element sizes. bulk_over_shear: of the film in CalculiX."""
 
     engine: str = "calculix"
@@ -44,8 +45,8 @@ class ExportSettings:
             raise UsageError(f"no engine is called {self.engine!r}", hint=f"use one of {', '.join(ENGINES)}")
         if self.elements not in (None, *ELEMENTS):
             raise UsageError(f"no elements are called {self.elements!r}", hint=f"use one of {', '.join(ELEMENTS)}")
-        if self.engine == "abaqus" and self.elements == "solid":
-            raise UsageError("solid elements are written for CalculiX alone", hint="use --elements shell")
+        if self.engine == "abaqus" and self.elements in ("solid", "sheets"):
+            raise UsageError(f"--elements {self.elements} is written for CalculiX alone", hint="use --elements shell")
         if not (math.isfinite(self.pressure_MPa) and self.pressure_MPa > 0):
             raise UsageError(f"--pressure-MPa is {self.pressure_MPa}", hint="give a positive pressure in MPa")
         if self.steps < 1:
@@ -65,7 +66,7 @@ def deck_of(design: ShellDesign, layup: Layup, settings: ExportSettings) -> tupl
     if settings.engine == "abaqus":
         lines = heading(tube, settings.pressure_MPa, "abaqus", None)
         return cut_in_four(tube), abaqus_deck(tube, settings.pressures_MPa, lines)
-    model = tube if settings.elements == "shell" else solid_of(tube)
+    model = {"shell": lambda tube: tube, "sheets": sheets_of, "solid": solid_of}[settings.elements or "solid"](tube)
     lines = heading(model, settings.pressure_MPa, "calculix", settings.bulk_over_shear)
     return model, calculix_deck(model, settings.pressures_MPa, lines, settings.bulk_over_shear)
 
@@ -93,7 +94,7 @@ def export(
         "design": {"name": design.name, **asdict(design)},
         "layup": layup.name,
         "engine": settings.engine,
-        "elements": "shell" if isinstance(model, Tube) else "solid",
+        "elements": settings.elements or ("shell" if isinstance(model, Tube) else "solid"),
         "cells": tube.extent.cells,
         "length_mm": tube.length_mm,
         "node_count": len(model.nodes_mm),
