@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 from benchlab.actuator import ShellDesign
 from benchlab.simulation.laws.law import FloatArray
 from benchlab.simulation.layup import Layup, laminate_at, pieces_of
-from benchlab.simulation.mesh import CellMesh, cell_mesh, graded_lines
-from benchlab.simulation.shell import DX, DY, DZ, K, LAMBDA, Density, Laminate, T, X, Y, enclosed_volume, strain_energy
+from benchlab.simulation.mesh import CellMesh, Grading, cell_mesh, grid_lines
+from benchlab.simulation.shell import DY, DZ, Density, Laminate, T, X, Y, potential_density, volume_density
 
 FIELDS = 6
-DEFAULT_MESH = (16, 5)
-"""Elements around half the circumference and along half a cell."""
+AROUND = Grading(fabric_mm=1.25, first_mm=0.3, growth=1.6, largest_mm=2.0)
+ALONG = Grading(fabric_mm=1.25, first_mm=0.1, growth=1.8, largest_mm=2.5)
+"""Sizes of elements: the film bends within some 0.2 mm of the borders of the fabric (docs/decisions/0006)."""
 
 GlobalTerm = Callable[[float, float], tuple[float, FloatArray, FloatArray]]
 """An energy of the quarter cell in (k, λ) alone: value (N·mm), gradient (2,), Hessian (2, 2). Loads enter here."""
@@ -65,15 +66,13 @@ class Cell:
     _pattern: tuple[NDArray[np.int64], NDArray[np.bool_]] = field(init=False)
 
     @classmethod
-    def of(
-        cls, design: ShellDesign, layup: Layup, mesh: tuple[int, int] = DEFAULT_MESH, terms: Sequence[GlobalTerm] = ()
-    ) -> Cell:
-        """The cell of a design, meshed with about `mesh` elements around and along; borders of pieces are grid lines."""
+    def of(cls, design: ShellDesign, layup: Layup, refine: int = 1, terms: Sequence[GlobalTerm] = ()) -> Cell:
+        """The cell of a design; borders of pieces are grid lines. refine: elements a default element is split in, each way."""
         pieces = pieces_of(design, layup)
         half_length = (design.window_width_mm + design.rib_width_mm) / 2
-        s_lines = graded_lines(sorted({place for piece in pieces for place in piece.s_mm}), mesh[0])
-        Z_lines = graded_lines(sorted({place for piece in pieces for place in piece.Z_mm}), mesh[1])
-        grid = cell_mesh(s_lines, Z_lines)
+        s_breaks = sorted({place for piece in pieces for place in piece.s_mm})
+        Z_breaks = sorted({place for piece in pieces for place in piece.Z_mm})
+        grid = cell_mesh(grid_lines(s_breaks, AROUND, refine), grid_lines(Z_breaks, ALONG, refine))
         radius = design.perimeter_mm / (2 * np.pi)
         shape = 1 / radius if layup.moulded else 0.0
         groups: dict[Laminate, list[int]] = {}
@@ -126,15 +125,10 @@ class Cell:
         count = len(q) * 9
         value, gradient, hessian = np.empty(count), np.empty((count, 20)), np.empty((count, 20, 20))
         for laminate, elements in self.laminates:
-            part = strain_energy(q[elements].reshape(-1, 3, FIELDS), state.k, state.lam, laminate)
+            part = potential_density(q[elements].reshape(-1, 3, FIELDS), state.k, state.lam, laminate, pressure_MPa)
             rows = (9 * elements[:, None] + np.arange(9)).ravel()
             value[rows], gradient[rows], hessian[rows] = part.value, part.gradient, part.hessian
-        volume = enclosed_volume(q.reshape(-1, 3, FIELDS), state.k, state.lam)
-        return Density(
-            value - pressure_MPa * volume.value,
-            gradient - pressure_MPa * volume.gradient,
-            hessian - pressure_MPa * volume.hessian,
-        )
+        return Density(value, gradient, hessian)
 
     def potential(self, state: State, pressure_MPa: float) -> Potential:
         """Π with its derivatives."""
@@ -147,18 +141,18 @@ class Cell:
         H = (density.hessian * weight[:, None, None]).reshape(E, 9, 20, 20)
 
         local = B.transpose(0, 2, 1) @ g[:, :, :18].reshape(E, 27, 6)
-        gradient = np.bincount(self._places.ravel(), local.ravel(), size)
+        gradient = _sums(self._places.ravel(), local.ravel(), size)
         mixed = H[:, :, :18, 18:].reshape(E, 27, 12)
         coupling_local = (B.transpose(0, 2, 1) @ mixed).reshape(E, 54, 2)
         coupling = np.stack(
-            [np.bincount(self._places.ravel(), coupling_local[:, :, i].ravel(), size) for i in range(2)], axis=1
+            [_sums(self._places.ravel(), coupling_local[:, :, i].ravel(), size) for i in range(2)], axis=1
         )
         inner = H[:, :, :18, :18].reshape(E, 9, 3, 6, 3, 6)
         half = np.ascontiguousarray(inner.transpose(0, 1, 2, 3, 5, 4)).reshape(E, 9, 108, 3) @ shape
         stiffness = B.transpose(0, 2, 1) @ half.reshape(E, 27, 6 * 6 * 9)
         stiffness = stiffness.reshape(E, 9, 6, 6, 9).transpose(0, 1, 2, 4, 3).reshape(E, 54, 54)
         slots, used = self._pattern
-        band = np.bincount(slots, stiffness[used], (self.bandwidth + 1) * size).reshape(-1, size)
+        band = _sums(slots, stiffness[used], (self.bandwidth + 1) * size).reshape(-1, size)
         gradient[self.held] = 0
         coupling[self.held] = 0
         band[0, self.held] = 1
@@ -174,4 +168,9 @@ class Cell:
     def volume_mm3(self, state: State) -> float:
         """Volume of the whole cell, a rib and a window."""
         q = self.points(state).reshape(-1, 3, FIELDS)
-        return 4 * float(enclosed_volume(q, state.k, state.lam).value @ self.mesh.weight_mm2.ravel())
+        return 4 * float(volume_density(q, state.k, state.lam) @ self.mesh.weight_mm2.ravel())
+
+
+def _sums(places: NDArray[np.int64], values: FloatArray, size: int) -> FloatArray:
+    """Sums of the values that belong to each of `size` places."""
+    return np.asarray(np.bincount(places, values, size), dtype=float)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from benchlab.errors import InputError, UsageError
+from benchlab.simulation.biaxial import PLAUSIBLE, biaxial_factor
 from benchlab.simulation.fit_models import SOLVERS, Solution
 from benchlab.simulation.fit_regression import equal_weights, inseparable, precision
 from benchlab.simulation.laws import Law
@@ -55,7 +56,7 @@ class LawFit:
     effective_points: independent points that the tests are worth, after the correlation of neighbouring residuals.
     aicc: Akaike's criterion with that number of points, comparable within one `fit_laws`; None where the law has as many
     coefficients as there are such points. stable: Drucker's stability, a range for each test mode. stable_over_data: whether
-    these ranges cover the fitted stretches in all modes. notes: what a reader must know, in words.
+    these ranges cover the fitted stretches in all modes. biaxial_factor: see `biaxial_factor`. notes: what a reader must know, in words.
     """
 
     name: str
@@ -72,7 +73,13 @@ class LawFit:
     stretch_range: tuple[float, float]
     stable: tuple[StableRange, ...]
     stable_over_data: bool
+    biaxial_factor: float
     notes: tuple[str, ...]
+
+    @property
+    def plausible(self) -> bool:
+        """Stable over the data, and in biaxial tension within a factor of two of what a law of I1 alone would give."""
+        return self.stable_over_data and 1 / PLAUSIBLE <= self.biaxial_factor <= PLAUSIBLE
 
 
 def fit_law(name: str, specimens: Sequence[Specimen]) -> LawFit:
@@ -120,6 +127,7 @@ def fit_law(name: str, specimens: Sequence[Specimen]) -> LawFit:
         stretch_range=limits,
         stable=stable,
         stable_over_data=all(one.covers(*limits) for one in stable) and _stable_at(found.law, limits),
+        biaxial_factor=biaxial_factor(found.law, limits[1]),
         notes=found.notes,
     )
     return replace(_scored([fit])[0], notes=(*found.notes, *_notes(fit, len(specimens))))
@@ -131,21 +139,20 @@ def fit_laws(specimens: Sequence[Specimen], names: Sequence[str] = tuple(SOLVERS
 
 
 def recommended(fits: Sequence[LawFit]) -> LawFit:
-    """The law with the lowest AICc among those that are stable over the data; where no AICc is known, the lowest RMSE.
+    """The law with the lowest AICc among the plausible ones; where no AICc is known, the lowest RMSE.
 
-    Only a guide: a test in one mode does not know how a law does in another. Raises InputError where no law is stable.
+    Only a guide: a test in one mode does not know how a law does in another. Raises InputError where no law is plausible.
     """
-    stable = [fit for fit in fits if fit.stable_over_data]
-    if not stable:
+    plausible = [fit for fit in fits if fit.plausible]
+    if not plausible:
         tried = ", ".join(fit.name for fit in fits)
         raise InputError(
-            f"no fitted law is stable over the stretches of the test ({tried})",
-            hint="fit a smaller range with --max-stretch, or try --law ogden-1, ogden-2 or ogden-3, which are always stable",
+            f"no fitted law is stable over the stretches of the test and plausible in biaxial tension ({tried})",
+            hint="fit a smaller range with --max-stretch, or choose one with --law all the same",
         )
-    scored = [fit for fit in stable if fit.aicc is not None]
-    if scored:
+    if scored := [fit for fit in plausible if fit.aicc is not None]:
         return min(scored, key=lambda fit: (fit.aicc, len(fit.coefficients)))
-    return min(stable, key=lambda fit: (fit.rmse_MPa, len(fit.coefficients)))
+    return min(plausible, key=lambda fit: (fit.rmse_MPa, len(fit.coefficients)))
 
 
 def thinned(stretch: FloatArray, stress_MPa: FloatArray, bins: int = 200) -> Specimen:
@@ -209,6 +216,12 @@ def _notes(fit: LawFit, specimens: int) -> list[str]:
         notes.append(
             f"one specimen: intervals hold for it, not for the material; neighbouring residuals correlate with "
             f"{fit.residual_correlation:.2f}, so the curve is worth about {fit.effective_points:.0f} independent points"
+        )
+    if not 1 / PLAUSIBLE <= fit.biaxial_factor <= PLAUSIBLE:
+        notes.append(
+            f"in equibiaxial tension up to {fit.biaxial_factor:.2g} times the stress of a law of I1 alone: no uniaxial test supports that"
+            if math.isfinite(fit.biaxial_factor)
+            else "pushes where it should pull, in uniaxial or equibiaxial tension"
         )
     for one in fit.stable:
         if not one.covers(*fit.stretch_range):

@@ -18,9 +18,9 @@ from benchlab.simulation.laws import Law, StVenantKirchhoff
 class Layup:
     """Materials and thicknesses (mm) of film, fabric and strip; everything about a shell that is not its cut.
 
-    weld_width_mm: how far the windowed fabric reaches under the strip, from the strip's edge, on either side; None for
-    all the way. The film lies everywhere. moulded: the shell is free of bending stress as a round tube, not flat.
-
+    weld_width_mm: how far the windowed fabric reaches under the strip, from the strip's edge, on either side; beyond
+    slw/2 it is whole. film_under_strip: the film closes the tube, or ends where the fabric does. moulded: the shell is
+    free of bending stress as a round tube; otherwise as a flat sheet.
     """
 
     name: str
@@ -31,13 +31,15 @@ class Layup:
     fabric_thickness_mm: float = 0.3
     strip_thickness_mm: float = 0.3
     film_under_strip: bool = True
-    weld_width_mm: float | None = 0.0
-    moulded: bool = False
+    weld_width_mm: float = 0.0
+    moulded: bool = True
 
     def __post_init__(self) -> None:
         for name in ("film_thickness_mm", "fabric_thickness_mm", "strip_thickness_mm"):
             if not (math.isfinite(value := getattr(self, name)) and value > 0):
                 raise UsageError(f"{name} is {value}", hint="give a positive thickness in mm")
+        if not (math.isfinite(self.weld_width_mm) and self.weld_width_mm >= 0):
+            raise UsageError(f"weld_width_mm is {self.weld_width_mm}", hint="give 0 or a width in mm")
 
 
 @dataclass(frozen=True)
@@ -64,12 +66,16 @@ class Layer:
     bottom_mm: float
     top_mm: float
 
+    @property
+    def thickness_mm(self) -> float:
+        return self.top_mm - self.bottom_mm
+
 
 def pieces_of(design: ShellDesign, layup: Layup) -> tuple[Piece, ...]:
     """The pieces of the quarter cell: film, ribs of fabric, strip."""
     edge, end = design.strip_width_mm / 2, (design.window_width_mm + design.rib_width_mm) / 2
     around = design.perimeter_mm / 2
-    welded = 0.0 if layup.weld_width_mm is None else max(0.0, edge - layup.weld_width_mm)
+    welded = max(0.0, edge - layup.weld_width_mm)
     film_from = 0.0 if layup.film_under_strip else welded
     pieces = [
         Piece("film", layup.film, layup.film_thickness_mm, (film_from, around), (0.0, end)),

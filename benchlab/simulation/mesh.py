@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,24 +31,40 @@ class CellMesh:
     centre_mm: FloatArray
 
 
-def graded_lines(breaks: Sequence[float], elements: int, ratio: float = 2.0) -> FloatArray:
-    """Grid lines from the first to the last of `breaks`, through each of them, about `elements` intervals in all.
+@dataclass(frozen=True)
+class Grading:
+    """Sizes of elements in mm: at most `fabric_mm` where the sheet is stiff; in the last span, the film of the window,
+    `first_mm` at the border of the fabric and `growth` times more from one to the next, up to `largest_mm`."""
 
-    Each span between breaks gets a share by the square root of its length, at least one, and its elements grow from its
-    ends towards its middle up to `ratio` times.
+    fabric_mm: float
+    first_mm: float
+    growth: float
+    largest_mm: float
 
-    >>> graded_lines([0, 1, 4], 3)
-    array([0. , 1. , 2.5, 4. ])
+
+def grid_lines(breaks: Sequence[float], grading: Grading, split: int = 1) -> FloatArray:
+    """Grid lines from the first to the last of `breaks` (mm), through each of them; every element split in `split`.
+
+    >>> grid_lines([0, 1, 4], Grading(fabric_mm=1, first_mm=0.5, growth=2, largest_mm=2)).round(3)
+    array([0.   , 1.   , 1.429, 2.286, 4.   ])
     """
-    spans = np.diff(np.asarray(breaks, dtype=float))
-    share = np.sqrt(spans) / np.sqrt(spans).sum() * elements
-    counts = np.maximum(1, np.round(share)).astype(int)
     lines = [float(breaks[0])]
-    for start, span, count in zip(breaks[:-1], spans, counts):
-        middle = (np.arange(count) + 0.5) / count
-        size = 1 + (ratio - 1) * np.sin(np.pi * middle)
-        lines += list(start + span * np.cumsum(size) / size.sum())
-    return np.array(lines)
+    for start, end in pairwise(breaks[:-1]):
+        lines += list(np.linspace(start, end, math.ceil((end - start) / grading.fabric_mm - 1e-9) + 1)[1:])
+    sizes = _growing(breaks[-1] - breaks[-2], grading)
+    lines += list(breaks[-2] + np.cumsum(sizes))
+    lines[-1] = float(breaks[-1])
+    return np.interp(np.arange((len(lines) - 1) * split + 1) / split, np.arange(len(lines)), lines)
+
+
+def _growing(length: float, grading: Grading) -> FloatArray:
+    """Sizes that grow as the grading says and add up to `length`."""
+    sizes = [min(grading.first_mm, length)]
+    while sum(sizes) < length:
+        sizes.append(min(sizes[-1] * grading.growth, grading.largest_mm))
+    if len(sizes) > 1 and sum(sizes) - length > sizes[-1] / 2:
+        sizes.pop()
+    return np.array(sizes) * length / sum(sizes)
 
 
 def cell_mesh(s_lines: FloatArray, Z_lines: FloatArray) -> CellMesh:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
@@ -42,6 +43,8 @@ def minimise(
     """
     state, here, shift = start, potential_at(start), 0.0
     border = np.array(free)
+    if not math.isfinite(here.value):
+        return Solved(state, here, 0, converged=False)
     for step in range(most_steps):
         for _ in range(_SHIFTS):
             move = _newton_step(here, border, shift)
@@ -89,7 +92,3 @@ def _newton_step(
     fields = -solved[:, 0] - solved[:, 1:] @ move
     gain = -0.5 * float(at.gradient @ fields + at.border_gradient[border] @ move[border])
     return fields, (float(move[0]), float(move[1])), gain
-
-
-def at_curvature(state: State, k: float) -> State:
-    return replace(state, k=k)

@@ -7,8 +7,10 @@ numbers are common to all points: k, the bending angle per unstretched length, a
     r_a = (x_a, y_a, (λ + k x) t_a),   d_a = (d_x,a − k t_a d_z,  d_y,a,  d_z,a + k t_a d_x),   a = s, Z.
 
 At height z above the reference surface the in-plane metric is r_a·r_b + 2 z sym(r_a·d_b) + z² d_a·d_b (a geometrically
-exact shell, Simo and Fox 1989); transverse shear is r_a·d, and a stiff term holds |d| = 1. Everything is taken through the
-16 components of `v` = (r_s, r_Z, d, d_s, d_Z, y): the energy is a function of v, and v of the fields, k and λ.
+exact shell, Simo and Fox 1989); transverse shear is r_a·d. A stiff term gives d the length that the thickness has: 1 in
+fabric, and in film, which keeps its volume, det(r_a·r_b)^(-1/2): a stretched film is thinner and bends more easily.
+Everything is taken through the 16 components of `v` = (r_s, r_Z, d, d_s, d_Z, y): the energy is a function of v, and v of
+the fields, k and λ.
 """
 
 from __future__ import annotations
@@ -31,8 +33,7 @@ R_S, R_Z, D, D_S, D_Z = (slice(3 * i, 3 * i + 3) for i in range(5))
 
 @dataclass(frozen=True)
 class Laminate:
-    """The layers at a point as points through the thickness: z (mm), weights (mm) and the law of each; and the stiffness
-    against transverse shear and against a change of the director's length, both in N/mm.
+    """The layers at a point, inner first; stiffnesses are per length (N/mm).
 
     curvature_per_mm: of the circumference where the laminate is free of stress; 0 is a flat sheet.
     """
@@ -40,13 +41,13 @@ class Laminate:
     layers: tuple[Layer, ...]
     curvature_per_mm: float = 0.0
 
-    @property
     def shear_stiffness(self) -> float:
-        return SHEAR_FACTOR * sum(layer.law.shear_modulus_MPa * (layer.top_mm - layer.bottom_mm) for layer in self.layers)
+        return SHEAR_FACTOR * sum(layer.law.shear_modulus_MPa * layer.thickness_mm for layer in self.layers)
 
-    @property
-    def length_stiffness(self) -> float:
-        return 3 * sum(layer.law.shear_modulus_MPa * (layer.top_mm - layer.bottom_mm) for layer in self.layers)
+    def length_stiffness(self, incompressible: bool) -> float:
+        """Young's modulus times thickness, of the layers that keep their volume or of those that keep their thickness."""
+        kept = [layer for layer in self.layers if layer.law.incompressible == incompressible]
+        return 3 * sum(layer.law.shear_modulus_MPa * layer.thickness_mm for layer in kept)
 
 
 @dataclass(frozen=True)
@@ -56,9 +57,6 @@ class Density:
     value: FloatArray
     gradient: FloatArray
     hessian: FloatArray
-
-    def __add__(self, other: Density) -> Density:
-        return Density(self.value + other.value, self.gradient + other.gradient, self.hessian + other.hessian)
 
 
 def kinematics(q: FloatArray, k: float, lam: float) -> tuple[FloatArray, FloatArray]:
@@ -122,48 +120,74 @@ for _form, _entries in enumerate(
         FORMS[_form, _i, _j] = FORMS[_form, _j, _i] = _coefficient
 
 
-def strain_energy(q: FloatArray, k: float, lam: float, laminate: Laminate) -> Density:
-    """Strain energy per reference area (N/mm) at n points of one laminate; q (n, 3, 6): value, d/ds, d/dZ of the fields."""
+def potential_density(q: FloatArray, k: float, lam: float, laminate: Laminate, pressure_MPa: float) -> Density:
+    """Strain energy − pressure · enclosed volume per reference area (N/mm) at n points of one laminate.
+
+    q (n, 3, 6): value, d/ds, d/dZ of the fields.
+    """
     v, J = kinematics(q, k, lam)
-    n = len(q)
-    vectors = v[:, :15].reshape(n, 5, 3)
-    slopes = np.einsum("eij,njc->neic", FORMS, vectors).reshape(n, 12, 15)
-    e = 0.5 * np.einsum("nec,nc->ne", slopes, v[:, :15])
-    W, W_e, W_ee = _energy_of_strains(e, laminate)
-    g, H = np.zeros((n, 16)), np.zeros((n, 16, 16))
-    g[:, :15] = np.einsum("ne,nec->nc", W_e, slopes)
-    H[:, :15, :15] = slopes.transpose(0, 2, 1) @ (W_ee @ slopes)
-    geometric = (W_e @ FORMS.reshape(12, 25)).reshape(n, 5, 5)
-    blocks = H[:, :15, :15].reshape(n, 5, 3, 5, 3)
-    for c in range(3):
-        blocks[:, :, c, :, c] += geometric
-    H[:, :15, :15] = blocks.reshape(n, 15, 15)
+    W, g, H = _strain_energy(v, laminate)
+    if pressure_MPa:
+        volume, slope, curvature = _enclosed_volume(v)
+        W -= pressure_MPa * volume
+        g -= pressure_MPa * slope
+        H -= pressure_MPa * curvature
     return _through_fields(W, g, H, q, k, J)
 
 
-def enclosed_volume(q: FloatArray, k: float, lam: float) -> Density:
-    """Volume between the reference surface and the plane of symmetry y = 0, per reference area: y·(r_Z × r_s)_y (mm).
+def volume_density(q: FloatArray, k: float, lam: float) -> FloatArray:
+    """Enclosed volume per reference area (mm) at n points."""
+    return _enclosed_volume(kinematics(q, k, lam)[0])[0]
+
+
+def strains(q: FloatArray, k: float, lam: float) -> FloatArray:
+    """The twelve strains (n, 12) that FORMS defines."""
+    v = kinematics(q, k, lam)[0][:, :15]
+    return 0.5 * (_strain_slopes(v) * v[:, None, :]).sum(axis=2)
+
+
+def _strain_slopes(v: FloatArray) -> FloatArray:
+    """Derivatives (n, 12, 15) of the strains in v."""
+    return (FORMS.reshape(60, 5) @ v[:, :15].reshape(-1, 5, 3)).reshape(-1, 12, 15)
+
+
+def _strain_energy(v: FloatArray, laminate: Laminate) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Energy (n,), gradient (n, 16) and Hessian (n, 16, 16) in v."""
+    n = len(v)
+    slopes = _strain_slopes(v)
+    e = 0.5 * (slopes @ v[:, :15, None])[:, :, 0]
+    W, W_e, W_ee = _energy_of_strains(e, laminate)
+    g, H = np.zeros((n, 16)), np.zeros((n, 16, 16))
+    g[:, :15] = (W_e[:, None, :] @ slopes)[:, 0]
+    inner = slopes.transpose(0, 2, 1) @ (W_ee @ slopes)
+    blocks, geometric = inner.reshape(n, 5, 3, 5, 3), (W_e @ FORMS.reshape(12, 25)).reshape(n, 5, 5)
+    for c in range(3):
+        blocks[:, :, c, :, c] += geometric
+    H[:, :15, :15] = inner
+    return W, g, H
+
+
+def _enclosed_volume(v: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Volume between the reference surface and the plane of symmetry y = 0, per reference area: y·(r_Z × r_s)_y.
 
     Over a cell this is exact: the end planes and the plane of symmetry add nothing to ∮ y n_y dA.
     """
-    v, J = kinematics(q, k, lam)
     a, c, b, d, y = v[:, 0], v[:, 2], v[:, 3], v[:, 5], v[:, 15]
     area = a * d - c * b
-    g, H = np.zeros((len(q), 16)), np.zeros((len(q), 16, 16))
+    g, H = np.zeros((len(v), 16)), np.zeros((len(v), 16, 16))
     g[:, 15], g[:, 0], g[:, 5], g[:, 2], g[:, 3] = area, y * d, y * a, -y * b, -y * c
     for i, j, value in ((0, 5, y), (2, 3, -y), (0, 15, d), (5, 15, a), (2, 15, -b), (3, 15, -c)):
         H[:, i, j] = H[:, j, i] = value
-    return _through_fields(y * area, g, H, q, k, J)
+    return y * area, g, H
 
 
 def thickness_points(laminate: Laminate, per_layer: int = 2) -> Sequence[tuple[Layer, float, float]]:
     """(layer, z, weight) of Gauss points through the thickness, in mm."""
     places, weights = np.polynomial.legendre.leggauss(per_layer)
     return [
-        (layer, layer.bottom_mm + (1 + place) / 2 * height, weight / 2 * height)
+        (layer, layer.bottom_mm + (1 + place) / 2 * layer.thickness_mm, weight / 2 * layer.thickness_mm)
         for layer in laminate.layers
         for place, weight in zip(places, weights)
-        for height in (layer.top_mm - layer.bottom_mm,)
     ]
 
 
@@ -182,7 +206,8 @@ def _energy_of_strains(e: FloatArray, laminate: Laminate) -> tuple[FloatArray, F
         grown = 1 + z * laminate.curvature_per_mm
         scale = 1 / np.array([grown**2, 1.0, grown])
         C11, C22, C12 = metric_at(e, z, laminate.curvature_per_mm).T
-        at = layer.law.energy(C11 + C22, C11 * C22 - C12 * C12)
+        area = C11 * C22 - C12 * C12
+        at = layer.law.energy(C11 + C22, np.where(area > 0, area, np.nan))  # turned inside out: no energy, no way there
         weight = thick * grown
         W += weight * at.W
         b_C = np.stack([C22, C11, -2 * C12], axis=1)
@@ -203,10 +228,31 @@ def _energy_of_strains(e: FloatArray, laminate: Laminate) -> tuple[FloatArray, F
     for i, a in enumerate((1.0, 2.0, 1.0)):
         for j, b in enumerate((1.0, 2.0, 1.0)):
             W_ee[:, 3 * i : 3 * i + 3, 3 * j : 3 * j + 3] = a * b * moments[i + j]
-    shear, length = laminate.shear_stiffness, laminate.length_stiffness
-    off = e[:, 11] - 1
-    W += shear / 2 * (e[:, 9] ** 2 + e[:, 10] ** 2) + length / 8 * off**2
-    W_e[:, 9:11], W_e[:, 11] = shear * e[:, 9:11], length / 4 * off
+    shear = laminate.shear_stiffness()
+    W += shear / 2 * (e[:, 9] ** 2 + e[:, 10] ** 2)
+    W_e[:, 9:11] = shear * e[:, 9:11]
     W_ee[:, 9, 9] = W_ee[:, 10, 10] = shear
-    W_ee[:, 11, 11] = length / 4
+    _add_length_energy(e, laminate, W, W_e, W_ee)
     return W, W_e, W_ee
+
+
+def _add_length_energy(e: FloatArray, laminate: Laminate, W: FloatArray, W_e: FloatArray, W_ee: FloatArray) -> None:
+    """Energy E h/8·(d·d·J² − 1)² that holds the director's length; J² = det(r_a·r_b) where volume is kept, 1 otherwise."""
+    length = e[:, 11]
+    if fabric := laminate.length_stiffness(incompressible=False):
+        W += fabric / 8 * (length - 1) ** 2
+        W_e[:, 11] += fabric / 4 * (length - 1)
+        W_ee[:, 11, 11] += fabric / 4
+    if film := laminate.length_stiffness(incompressible=True):
+        A_ss, A_ZZ, A_sZ = e[:, :3].T
+        area = A_ss * A_ZZ - A_sZ**2
+        off = length * area - 1
+        places = np.array([0, 1, 2, 11])
+        slope = np.stack([length * A_ZZ, length * A_ss, -2 * length * A_sZ, area], axis=1)
+        W += film / 8 * off**2
+        W_e[:, places] += film / 4 * off[:, None] * slope
+        W_ee[:, places[:, None], places] += film / 4 * slope[:, :, None] * slope[:, None, :]
+        for i, j, second in ((0, 1, length), (0, 11, A_ZZ), (1, 11, A_ss), (2, 11, -2 * A_sZ)):
+            W_ee[:, i, j] += film / 4 * off * second
+            W_ee[:, j, i] += film / 4 * off * second
+        W_ee[:, 2, 2] -= film / 2 * off * length

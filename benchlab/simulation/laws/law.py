@@ -24,7 +24,13 @@ class Energy:
 
 
 class Law(Protocol):
-    """An isotropic sheet in plane stress."""
+    """An isotropic sheet in plane stress.
+
+    incompressible: it keeps its volume, so that its thickness stretch is b^(-1/2); otherwise the thickness is taken to stay.
+    """
+
+    @property
+    def incompressible(self) -> bool: ...
 
     def energy(self, a: FloatArray, b: FloatArray) -> Energy:
         """Strain energy and derivatives at a = tr C, b = det C > 0."""

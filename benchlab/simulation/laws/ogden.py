@@ -40,6 +40,10 @@ class Ogden:
                 raise UsageError(f"Ogden's law with mu {mu} MPa, alpha {alpha}", hint="give finite values, alpha not 0")
 
     @property
+    def incompressible(self) -> bool:
+        return True
+
+    @property
     def shear_modulus_MPa(self) -> float:
         return sum(mu * alpha for mu, alpha in zip(self.mu_MPa, self.alpha)) / 2
 

@@ -24,6 +24,10 @@ class Polynomial:
     C30: float = 0.0
 
     @property
+    def incompressible(self) -> bool:
+        return True
+
+    @property
     def shear_modulus_MPa(self) -> float:
         return 2 * (self.C10 + self.C01)
 

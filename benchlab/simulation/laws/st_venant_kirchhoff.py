@@ -20,6 +20,10 @@ class StVenantKirchhoff:
     poisson_ratio: float = 0.35
 
     @property
+    def incompressible(self) -> bool:
+        return False
+
+    @property
     def shear_modulus_MPa(self) -> float:
         return self.youngs_modulus_MPa / (2 * (1 + self.poisson_ratio))
 
