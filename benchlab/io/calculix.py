@@ -67,7 +67,9 @@ def read_displacements(path: Path) -> Displacements:
         try:
             table = np.array(rows, dtype=float).reshape(-1, 4)
         except ValueError:
-            raise InputError("a row of displacements is not four numbers", file=path, where=f"set {head[1]}") from None
+            table = np.full((1, 4), np.nan)
+        if not np.isfinite(table).all():
+            raise InputError("a row of displacements is not four numbers", file=path, where=f"set {head[1]}")
         found.setdefault(float(head[2]), {})[head[1]] = table[:, 0].astype(np.int64), table[:, 1:]
     if not found:
         raise InputError("holds no displacements", file=path, hint="print them with *NODE PRINT, U")
