@@ -17,6 +17,9 @@ from benchlab.simulation.laws.homogeneous import MODES, nominal_stress_MPa
 from benchlab.simulation.laws.law import FloatArray
 from benchlab.simulation.stability import SEARCHED, StableRange, is_stable, stable_ranges
 
+LEAST_POINTS = 12.0
+"""Independent points that a comparison of laws grants the tests at least."""
+
 
 @dataclass(frozen=True)
 class Specimen:
@@ -54,8 +57,9 @@ class LawFit:
 
     condition_number: of the scaled design; above 30 the coefficients in `not_separated` are known only together.
     effective_points: independent points that the tests are worth, after the correlation of neighbouring residuals.
-    aicc: Akaike's criterion with that number of points, comparable within one `fit_laws`; None where the law has as many
-    coefficients as there are such points. stable: Drucker's stability, a range for each test mode. stable_over_data: whether
+    aicc: Akaike's criterion (Hurvich and Tsai 1989) with that number of points or 12, comparable within one `fit_laws`; None
+    where the law has too many coefficients for the points.
+    stable: Drucker's stability, a range for each test mode. stable_over_data: whether
     these ranges cover the fitted stretches in all modes. biaxial_factor: see `biaxial_factor`. notes: what a reader must know, in words.
     """
 
@@ -130,12 +134,12 @@ def fit_law(name: str, specimens: Sequence[Specimen]) -> LawFit:
         biaxial_factor=biaxial_factor(found.law, limits[1]),
         notes=found.notes,
     )
-    return replace(_scored([fit])[0], notes=(*found.notes, *_notes(fit, len(specimens))))
+    return replace(_scored([fit], len(stretch))[0], notes=(*found.notes, *_notes(fit, len(specimens))))
 
 
 def fit_laws(specimens: Sequence[Specimen], names: Sequence[str] = tuple(SOLVERS)) -> tuple[LawFit, ...]:
     """Fit several laws, in the order of `names`, with criteria that can be compared."""
-    return _scored([fit_law(name, specimens) for name in names])
+    return _scored([fit_law(name, specimens) for name in names], sum(len(one.stretch) for one in specimens))
 
 
 def recommended(fits: Sequence[LawFit]) -> LawFit:
@@ -172,9 +176,13 @@ def thinned(stretch: FloatArray, stress_MPa: FloatArray, bins: int = 200) -> Spe
     return Specimen(*means)
 
 
-def _scored(fits: Sequence[LawFit]) -> tuple[LawFit, ...]:
-    """AICc with one number of points for all: the effective one of the law that fits best."""
-    n = min(fits, key=lambda fit: fit.rmse_MPa).effective_points
+def _scored(fits: Sequence[LawFit], points: int) -> tuple[LawFit, ...]:
+    """AICc with one number of points for all: the effective one of the law that fits best, at least LEAST_POINTS, at most all.
+
+    A smooth test that every law misses by a wave would otherwise count for less than a law has coefficients.
+    """
+    best = min(fits, key=lambda fit: fit.rmse_MPa)
+    n = min(points, max(best.effective_points, LEAST_POINTS))
     scored = []
     for fit in fits:
         k = len(fit.coefficients) + 1

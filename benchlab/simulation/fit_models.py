@@ -20,6 +20,7 @@ _GRID = (-8.0, -5.0, -3.0, -2.0, -1.0, 0.5, 1.3, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0, 
 _LIMIT = 25.0
 _STARTS = 6
 _ZERO = 0.01
+_SAME = 0.01
 
 
 @dataclass(frozen=True)
@@ -135,6 +136,10 @@ def _shape(alpha: FloatArray, stretch: FloatArray) -> FloatArray:
 
 
 def _ogden(stretch: FloatArray, mu: FloatArray, alpha: FloatArray, share: FloatArray) -> Solution:
+    share, mu = share.copy(), mu.copy()
+    for i, j in itertools.combinations(range(len(alpha)), 2):
+        if abs(alpha[i] - alpha[j]) < _SAME and mu[j]:  # one term, found twice
+            share[i], mu[i], share[j], mu[j] = share[i] + share[j], mu[i] + mu[j], 0.0, 0.0
     kept = share > 1e-6 * share.max()
     order = np.argsort(-share[kept])
     mu, alpha = mu[kept][order], alpha[kept][order]
@@ -143,7 +148,7 @@ def _ogden(stretch: FloatArray, mu: FloatArray, alpha: FloatArray, share: FloatA
     J = np.concatenate([up - down, mu * np.log(column) * (up + down / 2)], axis=1)
     count = len(mu)
     names = tuple(f"{stem}{i}" for stem in ("mu", "alpha") for i in range(1, count + 1))
-    notes = [] if kept.all() else [f"{count} of {len(kept)} terms are enough: the others vanish"]
+    notes = [] if kept.all() else [f"{count} of {len(kept)} terms are enough: the others vanish or are the same"]
     if np.any(np.abs(alpha) > 0.99 * _LIMIT):
         notes.append(f"an exponent ran to the limit of {_LIMIT:g}")
     law = Ogden(tuple(map(float, mu)), tuple(map(float, alpha)))
