@@ -14,6 +14,7 @@ from benchlab.cli.analyze import analyze
 from benchlab.cli.calibrate import calibrate
 from benchlab.cli.cut import cut
 from benchlab.cli.export import export
+from benchlab.cli.fit_material import fit_material
 from benchlab.cli.sample_data import sample_data
 from benchlab.errors import BenchlabError, printable
 
@@ -38,6 +39,7 @@ cli.add_command(analyze)
 cli.add_command(calibrate)
 cli.add_command(cut)
 cli.add_command(export)
+cli.add_command(fit_material)
 cli.add_command(sample_data)
 
 
