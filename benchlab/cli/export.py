@@ -37,7 +37,12 @@ from benchlab.errors import UsageError, printable
 )
 @click.option("--around-mm", type=Finite("MM"), default=1.7, show_default=True, help="Largest element side, around.")
 @click.option(
-    "--along-mm", type=Finite("MM"), default=0.5, show_default=True, help="Largest element side, along the axis."
+    "--along-mm", type=Finite("MM"), default=0.75, show_default=True, help="Largest element side, along the axis."
+)
+@click.option(
+    "--edge-mm",
+    type=Finite("MM"),
+    help="Element length beside the borders of windows. [default: 0.2, or --along-mm if that is less]",
 )
 @click.option(
     "--bulk-over-shear",
@@ -78,6 +83,8 @@ def export(
     if full_length and cells is not None:
         raise UsageError("--cells and --full-length are both given", hint="give one of them")
     options["pressure_MPa"] = options.pop("pressure_mpa")
+    if options["edge_mm"] is None:
+        options["edge_mm"] = 0.2 if options["along_mm"] > 0.2 else None
     settings = ExportSettings(engine=engine, cells=None if full_length else cells or 4, **options)
     found = write(design, material, settings, out or Path(f"{design.name}_{engine}.inp"), overwrite)
     click.echo(

@@ -86,16 +86,25 @@ CAP_THICKNESS_MM = 2.0
 INSIDE = 1e-6  # mm; a point on the border of the quarter cell is taken as just inside
 
 
-def tube_of(design: ShellDesign, layup: Layup, extent: Extent, around_mm: float = 1.7, along_mm: float = 1.0) -> Tube:
-    """Mesh of the half tube; elements are at most `around_mm` by `along_mm`. Raises UsageError on sizes that are not positive."""
-    for name, size in (("around_mm", around_mm), ("along_mm", along_mm)):
+def tube_of(
+    design: ShellDesign,
+    layup: Layup,
+    extent: Extent,
+    around_mm: float = 1.7,
+    along_mm: float = 1.0,
+    edge_mm: float | None = None,
+) -> Tube:
+    """Mesh of the half tube; elements are at most `around_mm` by `along_mm`; with `edge_mm`, two rows of that length lie on
+    either side of every border of a window, where the film bends. Raises UsageError on sizes that are not positive."""
+    sizes = {"around_mm": around_mm, "along_mm": along_mm} | ({} if edge_mm is None else {"edge_mm": edge_mm})
+    for name, size in sizes.items():
         if not (math.isfinite(size) and size > 0):
             raise UsageError(f"element size {name} is {size}", hint="give a positive length in mm")
     pieces = pieces_of(design, layup)
     radius = design.perimeter_mm / (2 * math.pi)
     s = lines([b for piece in pieces for b in piece.s_mm], around_mm)
     ribs, borders = _stations(design, extent)
-    z = lines(borders, along_mm)
+    z = lines(borders if edge_mm is None else _with_edges(borders, ribs, design, edge_mm), along_mm)
     quads, u, v = quadrilaterals(len(s) - 1, len(z) - 1)
     angle = halved(s)[u] / radius
     wall = np.column_stack([-radius * np.cos(angle), radius * np.sin(angle), halved(z)[v]])
@@ -139,6 +148,15 @@ def _stations(design: ShellDesign, extent: Extent) -> tuple[FloatArray, FloatArr
     if extent.from_window:
         borders.append(window / 2)
     return ribs, np.array([b for b in borders if b >= 0], dtype=float)
+
+
+def _with_edges(borders: FloatArray, ribs: FloatArray, design: ShellDesign, edge_mm: float) -> FloatArray:
+    """Borders, and beside every border of a window two more to either side."""
+    if 5 * edge_mm > min(design.rib_width_mm, design.window_width_mm):
+        raise UsageError(f"element size edge_mm is {edge_mm:g}, too long for rib or window", hint="give less, or none")
+    at = np.concatenate([ribs - design.rib_width_mm / 2, ribs + design.rib_width_mm / 2])
+    more = (at[:, None] + edge_mm * np.array([-2, -1, 1, 2])).ravel()
+    return np.concatenate([borders, more[(more > edge_mm / 2) & (more < borders.max() - edge_mm / 2)]])
 
 
 def _cap(

@@ -28,7 +28,7 @@ ELEMENTS = ("solid", "shell", "sheets")
 @dataclass(frozen=True)
 class ExportSettings:
     """cells: N from mid rib, None for half the actuator. elements: "solid", "shell" or "sheets" (None: as suits the engine).
-    around_mm, along_mm: largest element sizes. bulk_over_shear: of the film in CalculiX."""
+    around_mm, along_mm: largest element sizes; edge_mm: beside the borders of windows. bulk_over_shear: of the film in CalculiX."""
 
     engine: str = "calculix"
     cells: int | None = 4
@@ -36,7 +36,8 @@ class ExportSettings:
     pressure_MPa: float = 0.35
     steps: int = 10
     around_mm: float = 1.7
-    along_mm: float = 0.5
+    along_mm: float = 0.75
+    edge_mm: float | None = 0.2
     bulk_over_shear: float = 2000.0
 
     def check(self) -> None:
@@ -62,7 +63,9 @@ class ExportSettings:
 def deck_of(design: ShellDesign, layup: Layup, settings: ExportSettings) -> tuple[Tube | Solid, str]:
     """The model and the deck's text. Raises UsageError."""
     settings.check()
-    tube = tube_of(design, layup, Extent.of(design, settings.cells), settings.around_mm, settings.along_mm)
+    tube = tube_of(
+        design, layup, Extent.of(design, settings.cells), settings.around_mm, settings.along_mm, settings.edge_mm
+    )
     if settings.engine == "abaqus":
         lines = heading(tube, settings.pressure_MPa, "abaqus", None)
         return cut_in_four(tube), abaqus_deck(tube, settings.pressures_MPa, lines)
