@@ -1,9 +1,11 @@
 """The tube as eight-node shells: half of it (mirror plane y = 0), from a mirror plane z = 0 to a stiff end cap.
 
 Undeformed it is round, radius R = P/2π: s = 0, the middle of the strip, lies at x = −R; shell normals point outwards.
-The pressure acts on the inner face of the shells, at R − t/2. Where faces step (a rib is thicker than a film), the step
-carries none; the cap is therefore loaded inside the film's inner face only, so that the loads on films and cap are
-those of a closed volume. With the cap loaded up to R the resultant is a transverse force, and cells near the cap bend less.
+The pressure acts on the inner face of the shells, at R − t/2, and on the cap inside the film's inner face, so that film and
+cap close a volume. In CalculiX this holds where all sections have one thickness (`sheets`) or layers are solids (`solid`):
+the cells then bend alike up to the last two before the cap. Composites of unlike thickness step at the border of every
+window, where CalculiX ties their edges into rigid knots; the loads on the two sides of a step do not balance when it turns,
+and the angle rises from cell to cell towards the cap (group `cells` of tests/benchmarks/predict_reference.py).
 """
 
 from __future__ import annotations
