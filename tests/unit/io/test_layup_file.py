@@ -12,14 +12,14 @@ from benchlab.simulation.layup import Layup
 
 
 def different(layup: Layup) -> Layup:
-    """The layup with every simple field changed from its default."""
+    """The layup with every simple field changed from its default, each by another amount."""
     changes = {}
-    for field in dataclasses.fields(Layup):
+    for index, field in enumerate(dataclasses.fields(Layup)):
         value = getattr(layup, field.name)
         if isinstance(value, bool):
             changes[field.name] = not value
         elif isinstance(value, (int, float)):
-            changes[field.name] = value + 0.125
+            changes[field.name] = value + 0.125 * (index + 1)
         elif value is None:
             changes[field.name] = 0.25
     return dataclasses.replace(layup, **changes)

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.stats import t as student
 
 from benchlab.errors import InputError, UsageError
 from benchlab.simulation.fit_law import Specimen, fit_law, fit_laws, recommended, thinned
@@ -79,6 +80,34 @@ def test_intervals_of_specimens_cover_the_mean_material() -> None:
 
     share = coverage(specimens, {"C10": 0.3, "C01": 0.1}, "mooney-rivlin", 300)
     assert all(0.90 <= value <= 0.99 for value in share.values()), share
+
+
+def test_the_interval_of_specimens_is_the_one_of_their_own_fits() -> None:
+    """With equal stretches it is mean ± t·s/√k of the coefficients fitted one by one."""
+    specimens = [drawn(Polynomial(c), 0.02, i) for i, c in enumerate((0.36, 0.41, 0.40, 0.45))]
+    each = [fit_law("neo-hooke", [one]).coefficients[0].value for one in specimens]
+    (c,) = fit_law("neo-hooke", specimens).coefficients
+    half = student.ppf(0.975, 3) * np.std(each, ddof=1) / 2
+    assert (c.low, c.high) == pytest.approx((np.mean(each) - half, np.mean(each) + half), rel=1e-9)
+
+
+@pytest.mark.parametrize("name", SOLVERS)
+def test_derivatives_in_the_coefficients_are_those_of_the_stress(name: str) -> None:
+    specimen = drawn(TRUTH[name], 0.01, 5)
+    found = SOLVERS[name](specimen.stretch, specimen.stress_MPa, np.ones(120))
+
+    def stress(values: np.ndarray) -> np.ndarray:
+        if isinstance(found.law, Ogden):
+            return nominal_stress_MPa(
+                Ogden(*(tuple(map(float, part)) for part in np.split(values, 2))), specimen.stretch
+            )
+        return nominal_stress_MPa(Polynomial(**{"C10": 0.0, **dict(zip(found.names, values))}), specimen.stretch)
+
+    for i, value in enumerate(found.values):
+        step = np.zeros(len(found.values))
+        step[i] = 1e-6 * max(abs(value), 1e-6)
+        difference = (stress(found.values + step) - stress(found.values - step)) / (2 * step[i])
+        np.testing.assert_allclose(found.J[:, i], difference, rtol=1e-4, atol=1e-5 * np.abs(difference).max())
 
 
 def test_specimens_count_alike_however_densely_sampled() -> None:

@@ -45,6 +45,18 @@ def test_mooney_with_negative_c01_loses_stability_where_the_closed_form_says() -
 
 
 @pytest.mark.parametrize("mode", MODES)
+def test_stable_is_what_the_eigenvalues_of_the_tangent_say(mode: str) -> None:
+    rng, stretch = np.random.default_rng(3), np.geomspace(0.4, 3.0, 41)
+    seen = set()
+    for _ in range(60):
+        law = Polynomial(*(rng.normal(0, 1, 6) * (1, 1, 0.2, 0.2, 0.2, 0.02)))
+        least = np.linalg.eigvalsh(tangent_MPa(law, *MODES[mode](stretch)))[:, 0]
+        np.testing.assert_array_equal(is_stable(law, stretch, mode), least > 0)
+        seen |= set((least > 0).tolist())
+    assert seen == {True, False}
+
+
+@pytest.mark.parametrize("mode", MODES)
 def test_yeoh_that_softens_is_caught_at_its_limit(mode: str) -> None:
     law = Polynomial(C10=0.5, C20=-0.05)
     found = {r.mode: r for r in stable_ranges(law)}[mode]
