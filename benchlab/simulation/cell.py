@@ -11,14 +11,10 @@ from numpy.typing import NDArray
 from benchlab.actuator import ShellDesign
 from benchlab.simulation.laws.law import FloatArray
 from benchlab.simulation.layup import Layup, laminate_at, pieces_of
-from benchlab.simulation.mesh import CellMesh, Grading, cell_mesh, grid_lines
+from benchlab.simulation.mesh import CellMesh, cell_mesh, gradings, grid_lines
 from benchlab.simulation.shell import DY, DZ, Density, Laminate, T, X, Y, potential_density, volume_density
 
 FIELDS = 6
-AROUND = Grading(fabric_mm=1.25, first_mm=0.3, growth=1.6, largest_mm=2.0)
-ALONG = Grading(fabric_mm=1.25, first_mm=0.1, growth=1.8, largest_mm=2.5)
-"""Sizes of elements: the film bends within some 0.2 mm of the borders of the fabric (docs/decisions/0006)."""
-
 GlobalTerm = Callable[[float, float], tuple[float, FloatArray, FloatArray]]
 """An energy of the quarter cell in (k, λ) alone: value (N·mm), gradient (2,), Hessian (2, 2). Loads enter here."""
 
@@ -53,12 +49,14 @@ class State:
 class Cell:
     """The quarter cell of a design: mesh, laminates, conditions of symmetry.
 
+    radius_mm: of the middle of the film in the round tube. inner_mm: z of the face on which the pressure acts.
     laminates: each with the numbers of its elements. terms: further energies in (k, λ).
     """
 
     mesh: CellMesh
     half_length_mm: float
     radius_mm: float
+    inner_mm: float
     laminates: tuple[tuple[Laminate, NDArray[np.int64]], ...]
     terms: tuple[GlobalTerm, ...] = ()
     held: NDArray[np.bool_] = field(init=False)
@@ -69,17 +67,22 @@ class Cell:
     def of(cls, design: ShellDesign, layup: Layup, refine: int = 1, terms: Sequence[GlobalTerm] = ()) -> Cell:
         """The cell of a design; borders of pieces are grid lines. refine: elements a default element is split in, each way."""
         pieces = pieces_of(design, layup)
-        half_length = (design.window_width_mm + design.rib_width_mm) / 2
         s_breaks = sorted({place for piece in pieces for place in piece.s_mm})
         Z_breaks = sorted({place for piece in pieces for place in piece.Z_mm})
-        grid = cell_mesh(grid_lines(s_breaks, AROUND, refine), grid_lines(Z_breaks, ALONG, refine))
+        around, along = gradings(design.perimeter_mm, layup.film_thickness_mm)
+        grid = cell_mesh(grid_lines(s_breaks, around, refine), grid_lines(Z_breaks, along, refine))
         radius = design.perimeter_mm / (2 * np.pi)
         shape = 1 / radius if layup.moulded else 0.0
         groups: dict[Laminate, list[int]] = {}
         for element, (s, Z) in enumerate(grid.centre_mm):
             groups.setdefault(Laminate(laminate_at(pieces, s, Z), shape), []).append(element)
         return cls(
-            grid, half_length, radius, tuple((laminate, np.array(e)) for laminate, e in groups.items()), tuple(terms)
+            mesh=grid,
+            half_length_mm=(design.window_width_mm + design.rib_width_mm) / 2,
+            radius_mm=radius,
+            inner_mm=-layup.film_thickness_mm / 2,
+            laminates=tuple((laminate, np.array(elements)) for laminate, elements in groups.items()),
+            terms=tuple(terms),
         )
 
     def __post_init__(self) -> None:
@@ -125,7 +128,9 @@ class Cell:
         count = len(q) * 9
         value, gradient, hessian = np.empty(count), np.empty((count, 20)), np.empty((count, 20, 20))
         for laminate, elements in self.laminates:
-            part = potential_density(q[elements].reshape(-1, 3, FIELDS), state.k, state.lam, laminate, pressure_MPa)
+            part = potential_density(
+                q[elements].reshape(-1, 3, FIELDS), state.k, state.lam, laminate, pressure_MPa, self.inner_mm
+            )
             rows = (9 * elements[:, None] + np.arange(9)).ravel()
             value[rows], gradient[rows], hessian[rows] = part.value, part.gradient, part.hessian
         return Density(value, gradient, hessian)
@@ -166,9 +171,9 @@ class Cell:
         return Potential(value, gradient, border_gradient, band, coupling, border)
 
     def volume_mm3(self, state: State) -> float:
-        """Volume of the whole cell, a rib and a window."""
+        """Volume inside the whole cell, a rib and a window."""
         q = self.points(state).reshape(-1, 3, FIELDS)
-        return 4 * float(volume_density(q, state.k, state.lam) @ self.mesh.weight_mm2.ravel())
+        return 4 * float(volume_density(q, state.k, state.lam, self.inner_mm) @ self.mesh.weight_mm2.ravel())
 
 
 def _sums(places: NDArray[np.int64], values: FloatArray, size: int) -> FloatArray:

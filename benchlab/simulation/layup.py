@@ -59,7 +59,7 @@ class Piece:
 
 @dataclass(frozen=True)
 class Layer:
-    """One layer of a laminate: z from `bottom_mm` to `top_mm`, outwards, 0 the reference surface."""
+    """One layer of a laminate: z from `bottom_mm` to `top_mm`, outwards, 0 the middle of the film."""
 
     name: str
     law: Law
@@ -91,11 +91,12 @@ def pieces_of(design: ShellDesign, layup: Layup) -> tuple[Piece, ...]:
 
 
 def laminate_at(pieces: Sequence[Piece], s: float, Z: float) -> tuple[Layer, ...]:
-    """The layers at a point, inner first, centred on the reference surface."""
-    here = [piece for piece in pieces if piece.covers(s, Z)]
-    z = -sum(piece.thickness_mm for piece in here) / 2
+    """The layers at a point, inner first. The film is the first piece; what lies on it starts at its outer face."""
+    film = pieces[0]
+    z = -film.thickness_mm / 2 if film.covers(s, Z) else film.thickness_mm / 2
     layers = []
-    for piece in here:
-        layers.append(Layer(piece.name, piece.law, z, z + piece.thickness_mm))
-        z += piece.thickness_mm
+    for piece in pieces:
+        if piece.covers(s, Z):
+            layers.append(Layer(piece.name, piece.law, z, z + piece.thickness_mm))
+            z += piece.thickness_mm
     return tuple(layers)

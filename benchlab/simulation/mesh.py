@@ -42,6 +42,13 @@ class Grading:
     largest_mm: float
 
 
+def gradings(perimeter_mm: float, film_mm: float) -> tuple[Grading, Grading]:
+    """Sizes around the circumference and along the axis: the film bends within a length of about its thickness from the
+    border of the fabric, so that the first element has to be smaller (docs/decisions/0006)."""
+    fabric, largest = perimeter_mm / 32, perimeter_mm / 20
+    return Grading(fabric, film_mm, 1.6, largest), Grading(fabric, film_mm / 3, 1.8, largest)
+
+
 def grid_lines(breaks: Sequence[float], grading: Grading, split: int = 1) -> FloatArray:
     """Grid lines from the first to the last of `breaks` (mm), through each of them; every element split in `split`.
 
@@ -78,7 +85,7 @@ def cell_mesh(s_lines: FloatArray, Z_lines: FloatArray) -> CellMesh:
     shape = np.empty((*basis.dx.shape, 3, NODES_PER_ELEMENT))
     for node in range(NODES_PER_ELEMENT):
         function = basis.basis[node][0]
-        shape[:, :, 0, node] = function.value
+        shape[:, :, 0, node] = np.asarray(function)
         shape[:, :, 1:, node] = np.moveaxis(function.grad, 0, -1)
     corners = basis.mesh.p[:, basis.mesh.t]
     return CellMesh(places[order], elements, shape, np.array(basis.dx), corners.mean(axis=1).T)

@@ -120,24 +120,26 @@ for _form, _entries in enumerate(
         FORMS[_form, _i, _j] = FORMS[_form, _j, _i] = _coefficient
 
 
-def potential_density(q: FloatArray, k: float, lam: float, laminate: Laminate, pressure_MPa: float) -> Density:
+def potential_density(
+    q: FloatArray, k: float, lam: float, laminate: Laminate, pressure_MPa: float, inner_mm: float
+) -> Density:
     """Strain energy − pressure · enclosed volume per reference area (N/mm) at n points of one laminate.
 
-    q (n, 3, 6): value, d/ds, d/dZ of the fields.
+    q (n, 3, 6): value, d/ds, d/dZ of the fields. inner_mm: z of the face on which the pressure acts.
     """
     v, J = kinematics(q, k, lam)
     W, g, H = _strain_energy(v, laminate)
     if pressure_MPa:
-        volume, slope, curvature = _enclosed_volume(v)
+        volume, slope, curvature = _enclosed_volume(v, inner_mm)
         W -= pressure_MPa * volume
         g -= pressure_MPa * slope
         H -= pressure_MPa * curvature
     return _through_fields(W, g, H, q, k, J)
 
 
-def volume_density(q: FloatArray, k: float, lam: float) -> FloatArray:
-    """Enclosed volume per reference area (mm) at n points."""
-    return _enclosed_volume(kinematics(q, k, lam)[0])[0]
+def volume_density(q: FloatArray, k: float, lam: float, inner_mm: float) -> FloatArray:
+    """Volume enclosed by the face at z = `inner_mm`, per reference area (mm) at n points."""
+    return _enclosed_volume(kinematics(q, k, lam)[0], inner_mm)[0]
 
 
 def strains(q: FloatArray, k: float, lam: float) -> FloatArray:
@@ -167,18 +169,21 @@ def _strain_energy(v: FloatArray, laminate: Laminate) -> tuple[FloatArray, Float
     return W, g, H
 
 
-def _enclosed_volume(v: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Volume between the reference surface and the plane of symmetry y = 0, per reference area: y·(r_Z × r_s)_y.
+def _enclosed_volume(v: FloatArray, z: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Volume between the face X = r + z d and the plane of symmetry y = 0, per reference area: Y·(X_Z × X_s)_y.
 
     Over a cell this is exact: the end planes and the plane of symmetry add nothing to ∮ y n_y dA.
     """
-    a, c, b, d, y = v[:, 0], v[:, 2], v[:, 3], v[:, 5], v[:, 15]
+    P = np.zeros((5, 16))  # to X_s and X_Z along x and ψ, and Y
+    for row, (middle, director) in enumerate(((0, 9), (2, 11), (3, 12), (5, 14), (15, 7))):
+        P[row, middle], P[row, director] = 1, z
+    a, c, b, d, y = P @ v.T
     area = a * d - c * b
-    g, H = np.zeros((len(v), 16)), np.zeros((len(v), 16, 16))
-    g[:, 15], g[:, 0], g[:, 5], g[:, 2], g[:, 3] = area, y * d, y * a, -y * b, -y * c
-    for i, j, value in ((0, 5, y), (2, 3, -y), (0, 15, d), (5, 15, a), (2, 15, -b), (3, 15, -c)):
-        H[:, i, j] = H[:, j, i] = value
-    return y * area, g, H
+    slope = np.stack([y * d, -y * b, -y * c, y * a, area], axis=1)
+    curvature = np.zeros((len(v), 5, 5))
+    for i, j, value in ((0, 3, y), (1, 2, -y), (0, 4, d), (3, 4, a), (1, 4, -b), (2, 4, -c)):
+        curvature[:, i, j] = curvature[:, j, i] = value
+    return y * area, slope @ P, P.T @ (curvature @ P)
 
 
 def thickness_points(laminate: Laminate, per_layer: int = 2) -> Sequence[tuple[Layer, float, float]]:
