@@ -20,7 +20,10 @@ from benchlab.errors import UsageError, printable
     "--cells", type=click.IntRange(1), help="Cells (rib and window) from the mirror plane to the cap. [default: 4]"
 )
 @click.option(
-    "--full-length", is_flag=True, help="The whole actuator: whole windows and end margins, mirrored at mid length."
+    "--whole",
+    "full_length",
+    is_flag=True,
+    help="The whole actuator: whole windows and end margins, mirrored at mid length.",
 )
 @click.option("--pressure-MPa", type=Finite(), default=0.35, show_default=True, help="Last pressure.")
 @click.option(
@@ -73,7 +76,7 @@ def export(
     \b
     Examples:
       benchlab export tw3_slw10 --engine calculix --out tw3_slw10.inp
-      benchlab export shell.yaml --engine abaqus --full-length --material tpu.yaml
+      benchlab export shell.yaml --engine abaqus --whole --material tpu.yaml
     """
     import json
 
@@ -81,7 +84,7 @@ def export(
     from benchlab.workflows.export import export as write
 
     if full_length and cells is not None:
-        raise UsageError("--cells and --full-length are both given", hint="give one of them")
+        raise UsageError("--cells and --whole are both given", hint="give one of them")
     options["pressure_MPa"] = options.pop("pressure_mpa")
     if options["edge_mm"] is None:
         options["edge_mm"] = 0.2 if options["along_mm"] > 0.2 else None

@@ -24,7 +24,7 @@ def test_the_full_length_is_half_of_the_actuator(benchlab, tmp_path: Path) -> No
         "tw9_slw10",
         "--engine",
         "abaqus",
-        "--full-length",
+        "--whole",
         "--along-mm",
         3,
         "--out",
@@ -48,7 +48,7 @@ def test_an_existing_deck_is_kept(benchlab, tmp_path: Path) -> None:
     ("options", "says"),
     [
         (["--cells", "0"], "--cells"),
-        (["--cells", "2", "--full-length"], "--full-length"),
+        (["--cells", "2", "--whole"], "--whole"),
         (["--pressure-MPa", "-1"], "--pressure-MPa is -1"),
         (["--along-mm", "0"], "along_mm is 0"),
         (["--elements", "sheets"], "CalculiX alone"),
