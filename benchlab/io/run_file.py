@@ -12,11 +12,8 @@ every text beside its SHA-256, and HDF5's own structures under theirs (file form
 
 from __future__ import annotations
 
-import json
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -24,15 +21,13 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from benchlab.errors import BenchlabError, InputError
-from benchlab.io.files import written_whole
+from benchlab.errors import InputError
 from benchlab.io.hdf5 import Reader, add_numbers, add_texts, open_hdf5
+from benchlab.io.nexus import Schema, nxdata, read_document, read_provenance_of, write_nexus
 from benchlab.vision.picture import FloatArray
 from benchlab.vision.series import CurvatureSeries
 
-SCHEMA = "benchlab-run"
-SCHEMA_VERSION = 1
-KIND = "benchlab run file"
+SCHEMA = Schema("benchlab-run", 1, "benchlab run file")
 _DOCUMENTS = ("settings", "provenance", "recording", "scale", "warnings")
 _XY = ("x", "y")
 
@@ -66,17 +61,24 @@ def write_run_file(
     Numbers in them that are not finite become None. Raises InputError where the disk refuses.
     """
     documents = dict(zip(_DOCUMENTS, (dict(settings), dict(provenance), dict(recording), dict(scale), list(warnings))))
-    image = _image(path, series, documents, partial)
-    with written_whole(path) as temporary:
-        temporary.write_bytes(image)
+
+    def fill(entry: h5py.Group) -> None:
+        axis = _write_curvature(entry, series)
+        _write_tracks(entry, series, axis)
+        _write_fit(entry, series, axis)
+        _write_over_pressure(entry, axis)
+
+    write_nexus(path, SCHEMA, "curvature", documents, fill, partial)
 
 
 def read_run_file(path: Path) -> RunFile:
     """Read a run file. InputError for anything damaged, foreign, cut short, outsize or from a newer benchlab."""
-    with open_hdf5(path, KIND) as reader:
-        _check_schema(reader)
+    with open_hdf5(path, SCHEMA.kind) as reader:
+        SCHEMA.check(reader)
         series = _read_series(reader)
-        read: dict[str, Any] = {name: _read_document(reader, name) for name in _DOCUMENTS}
+        read: dict[str, Any] = {
+            name: read_document(reader, name, SCHEMA, list if name == "warnings" else dict) for name in _DOCUMENTS
+        }
         partial = bool(reader.file.attrs["partial"])
     return RunFile(series, **read, partial=partial)
 
@@ -86,57 +88,14 @@ def read_provenance(path: Path) -> dict[str, Any] | None:
 
     None where there is no file, no run file of this schema, or an unreadable one.
     """
-    try:
-        with open_hdf5(path, KIND) as reader:
-            _check_schema(reader)
-            return {**_read_document(reader, "provenance"), "partial": bool(reader.file.attrs["partial"])}
-    except BenchlabError:
-        return None
-
-
-def _image(path: Path, series: CurvatureSeries, documents: Mapping[str, Any], partial: bool) -> bytes:
-    """The bytes of the file, made in memory so that a full disk cannot leave HDF5 with work undone."""
-    with h5py.File(path, "w", driver="core", backing_store=False, libver=("v110", "v110")) as file:
-        file.attrs.update({"NX_class": "NXroot", "default": "entry", "creator": "benchlab"})
-        file.attrs.update({"schema": SCHEMA, "schema_version": SCHEMA_VERSION, "partial": partial})
-        entry = file.create_group("entry")
-        entry.attrs.update({"NX_class": "NXentry", "default": "curvature"})
-        for document, content in documents.items():
-            text = json.dumps(_plain(content), allow_nan=False)
-            add_texts(entry, document, text, f"{document} (JSON)")
-        axis = _write_curvature(entry, series)
-        _write_tracks(entry, series, axis)
-        _write_fit(entry, series, axis)
-        _write_over_pressure(entry, axis)
-        file.flush()
-        return bytes(file.id.get_file_image())
-
-
-def _plain(value: object) -> object:
-    """The same in JSON's own types; a number that is not finite is null, as JSON has none."""
-    if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    if isinstance(value, np.generic | np.ndarray):
-        return _plain(value.tolist())
-    if isinstance(value, Path | Fraction):
-        return str(value)
-    return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
-def _nxdata(entry: h5py.Group, name: str, signal: str, axes: Sequence[str], title: str) -> h5py.Group:
-    group = entry.create_group(name)
-    group.attrs.update({"NX_class": "NXdata", "signal": signal, "axes": list(axes)})
-    add_texts(group, "title", title, "title")
-    return group
+    return read_provenance_of(path, SCHEMA)
 
 
 def _write_curvature(entry: h5py.Group, series: CurvatureSeries) -> str:
     """Write the main group; returns the name of the axis that all other arrays share."""
     timed = bool(np.isfinite(series.time_s).all()) and series.time_s.size > 0
     axis = "time_s" if timed else "frame"
-    group = _nxdata(entry, "curvature", "angle_deg", [axis], "bending angle of the actuator")
+    group = nxdata(entry, "curvature", "angle_deg", [axis], "bending angle of the actuator")
     group.attrs["auxiliary_signals"] = ["curvature_per_mm"]
     frame = np.arange(len(series.time_s), dtype=np.int64)
     add_numbers(group, "frame", frame, "", "frame number from 0" if timed else "picture number from 0")
@@ -161,7 +120,7 @@ def _write_curvature(entry: h5py.Group, series: CurvatureSeries) -> str:
 
 
 def _write_tracks(entry: h5py.Group, series: CurvatureSeries, axis: str) -> None:
-    group = _nxdata(entry, "tracks", "markers_px", [axis, "marker", "xy"], "markers along the body, fixed end first")
+    group = nxdata(entry, "tracks", "markers_px", [axis, "marker", "xy"], "markers along the body, fixed end first")
     group[axis] = entry["curvature"][axis]
     add_numbers(group, "marker", np.arange(1, series.used.shape[1] + 1), "", "marker, 1 at the fixed end")
     add_texts(group, "xy", _XY, "x to the right, y down")
@@ -174,7 +133,7 @@ def _write_tracks(entry: h5py.Group, series: CurvatureSeries, axis: str) -> None
 
 
 def _write_fit(entry: h5py.Group, series: CurvatureSeries, axis: str) -> None:
-    group = _nxdata(entry, "fit", "curvature_per_px", [axis], "fitted circle in the picture")
+    group = nxdata(entry, "fit", "curvature_per_px", [axis], "fitted circle in the picture")
     group[axis] = entry["curvature"][axis]
     add_texts(group, "xy", _XY, "x to the right, y down")
     group["xy"].make_scale("xy")
@@ -188,7 +147,7 @@ def _write_over_pressure(entry: h5py.Group, axis: str) -> None:
     source = entry["curvature"]
     if "pressure_MPa" not in source:
         return
-    group = _nxdata(entry, "angle_over_pressure", "angle_deg", ["pressure_MPa"], "bending angle over pressure")
+    group = nxdata(entry, "angle_over_pressure", "angle_deg", ["pressure_MPa"], "bending angle over pressure")
     for name in ("angle_deg", "angle_deg_errors", "pressure_MPa", axis):
         group[name] = source[name]  # hard links: the same data, under a second name
 
@@ -203,31 +162,12 @@ def _attach(group: h5py.Group, *axes: str) -> None:
             dataset.dims[dimension].attach_scale(group[axis])
 
 
-def _check_schema(reader: Reader) -> None:
-    if reader.attribute("schema") != SCHEMA:
-        raise InputError(f"not a {KIND}", file=reader.path, hint="its root has no attribute schema = benchlab-run")
-    version = int(reader.attribute("schema_version", 0))
-    if version > SCHEMA_VERSION:
-        what = f"made by a newer benchlab (schema {version}, this one reads {SCHEMA_VERSION})"
-        raise InputError(what, file=reader.path, hint="update benchlab")
-    if version < 1:
-        raise InputError(f"schema version {version} was never in use", file=reader.path, hint="make the file again")
-
-
-def _read_document(reader: Reader, name: str) -> Any:
-    (text,) = reader.texts(f"/entry/{name}")
-    content = json.loads(text)
-    if not isinstance(content, list if name == "warnings" else dict):
-        raise InputError(f"dataset /entry/{name} is not what a {KIND} holds", file=reader.path)
-    return content
-
-
 def _read_series(reader: Reader) -> CurvatureSeries:
     main, tracks, fit = "/entry/curvature", "/entry/tracks", "/entry/fit"
     frame = reader.numbers(f"{main}/frame")
     marker = reader.numbers(f"{tracks}/marker")
     if frame.ndim != 1 or marker.ndim != 1:
-        raise InputError("frames and markers are not lists", file=reader.path, hint=f"not a {KIND}")
+        raise InputError("frames and markers are not lists", file=reader.path, hint=f"not a {SCHEMA.kind}")
     t, n = len(frame), len(marker)
 
     def column(name: str, *shape: int) -> FloatArray:

@@ -6,13 +6,10 @@ import contextlib
 import json
 import os
 import platform
-import subprocess
-import sys
 import tempfile
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime
 from hashlib import sha256 as new_sha256
 from pathlib import Path
 from typing import Any
@@ -21,6 +18,7 @@ import benchlab
 from benchlab.errors import UsageError
 from benchlab.io.files import cannot_write, check_regular_file, reason_of, sha256
 from benchlab.io.run_file import read_provenance
+from benchlab.workflows.provenance import made_by
 
 
 @dataclass(frozen=True)
@@ -210,32 +208,12 @@ def _key(content: str, settings: dict[str, Any]) -> str:
 def provenance(source: Path, settings: dict[str, Any]) -> dict[str, Any]:
     """Who made a result, from what and how: enough to make it again."""
     content = content_hash(source)
-    versions = {"benchlab": benchlab.__version__, "python": platform.python_version()}
-    for name in ("numpy", "av", "cv2", "h5py"):
-        versions[name] = getattr(sys.modules.get(name), "__version__", "not loaded")
     return {
-        "created": datetime.now(UTC).isoformat(timespec="seconds"),
-        "argv": sys.argv,
-        "versions": versions,
-        "git": _git_hash(),
+        **made_by("numpy", "av", "cv2", "h5py"),
         "source": str(source),
         "sha256": content,
         "key": _key(content, settings),
     }
-
-
-def _git_hash() -> str | None:
-    """The commit of a source checkout that this code runs from, if it does."""
-    top = Path(benchlab.__file__).parent.parent
-    if not (top / ".git").exists():
-        return None
-    try:
-        found = subprocess.run(
-            ["git", "rev-parse", "HEAD"], cwd=top, capture_output=True, text=True, timeout=5, check=False
-        )
-    except (OSError, subprocess.TimeoutExpired):
-        return None
-    return found.stdout.strip() or None
 
 
 def refuse_same_names(outputs: list[Outputs]) -> None:
