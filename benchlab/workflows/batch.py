@@ -31,12 +31,13 @@ def run_batch(items: Sequence[Item], work: Callable[[Item], dict[str, Any]], job
     """
     if jobs <= 1:
         for item in items:
-            yield _attempt(item, work)
+            yield attempt(item, work)
         return
     yield from _in_processes(items, work, jobs)
 
 
-def _attempt(item: Item, work: Callable[[Item], dict[str, Any]]) -> Outcome[Item]:
+def attempt(item: Item, work: Callable[[Item], dict[str, Any]]) -> Outcome[Item]:
+    """The outcome of one item; an expected error ends it."""
     try:
         return Outcome(item, work(item), None)
     except BenchlabError as error:
@@ -51,7 +52,7 @@ def _in_processes(items: Sequence[Item], work: Callable[[Item], dict[str, Any]],
     lost: list[Item] = []
     pool = _pool(jobs)
     try:
-        waiting: dict[Future[Outcome[Item]], Item] = {pool.submit(_attempt, item, work): item for item in items}
+        waiting: dict[Future[Outcome[Item]], Item] = {pool.submit(attempt, item, work): item for item in items}
         while waiting:
             done, _ = wait(waiting, return_when=FIRST_COMPLETED)
             for future in done:
@@ -65,6 +66,6 @@ def _in_processes(items: Sequence[Item], work: Callable[[Item], dict[str, Any]],
     for item in lost:
         with _pool(1) as single:
             try:
-                yield single.submit(_attempt, item, work).result()
+                yield single.submit(attempt, item, work).result()
             except BrokenProcessPool:
                 yield Outcome(item, None, BatchError("its worker process died twice", hint="is there enough memory?"))
