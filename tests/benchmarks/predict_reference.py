@@ -19,6 +19,7 @@ from typing import Any
 
 import benchlab
 from benchlab.actuator import ShellDesign
+from benchlab.errors import InputError
 from benchlab.io.calculix import find_calculix
 from benchlab.io.files import written_whole
 from benchlab.simulation.laws import Polynomial
@@ -133,7 +134,11 @@ def main() -> None:
     for group in chosen.groups:
         for run in runs(group):
             if chosen.only in (None, run[1], run[2].elements):
-                new = rows(run)
+                try:
+                    new = rows(run)
+                except InputError as error:  # CalculiX gave up: said, and without a row
+                    print(f"no result for {run}: {error.what}", flush=True)
+                    continue
                 add(chosen.out, new, version)
                 print(new[-1], flush=True)
 
