@@ -11,6 +11,7 @@ from benchlab.actuator import ShellDesign
 from benchlab.cli.design_options import Design
 from benchlab.cli.options import Finite
 from benchlab.errors import UsageError, printable
+from benchlab.io.layup_file import DEFAULT_LAYUP
 
 
 @click.command(short_help="Finite-element deck of a design for CalculiX or Abaqus.")
@@ -30,13 +31,13 @@ from benchlab.errors import UsageError, printable
     "--steps", type=click.IntRange(1), default=10, show_default=True, help="Equal pressure steps with results."
 )
 @click.option(
-    "--material", metavar="FILE|NAME", default="trial", show_default=True, help="Layup: a file, or one that is shipped."
+    "--material", metavar="FILE|NAME", default=DEFAULT_LAYUP, show_default=True, help="Layup: a file, or one that is shipped."
 )
 @click.option(
     "--elements",
-    type=click.Choice(["solid", "shell", "sheets"]),
-    help="Solids layer upon layer (C3D20R), shells of laminates (S8R; S4R in Abaqus), or a shell for each layer on shared nodes "
-    "(S8R). [default: solid in CalculiX, shell in Abaqus]",
+    type=click.Choice(["sheets", "shell", "solid"]),
+    help="A shell for each layer on shared nodes (S8R), shells of laminates (S8R; S4R in Abaqus), or solids layer upon layer "
+    "(C3D20R). [default: sheets in CalculiX, shell in Abaqus]",
 )
 @click.option("--around-mm", type=Finite("MM"), default=1.7, show_default=True, help="Largest element side, around.")
 @click.option(

@@ -19,7 +19,7 @@ from benchlab.io.yaml_file import Document, read_document, write_document
 from benchlab.simulation.laws import StVenantKirchhoff, describe_law, make_law
 from benchlab.simulation.layup import Layup
 
-DEFAULT_LAYUP = "trial"
+DEFAULT_LAYUP = "from-FEM-angles"
 """Name of the layup that is simulated where none is given."""
 
 _NESTED = ("film", "fabric", "film_thickness_mm", "fabric_thickness_mm", "strip_thickness_mm")

@@ -75,7 +75,7 @@ class Cell:
         shape = 1 / radius if layup.moulded else 0.0
         groups: dict[Laminate, list[int]] = {}
         for element, (s, Z) in enumerate(grid.centre_mm):
-            groups.setdefault(Laminate(laminate_at(pieces, s, Z), shape), []).append(element)
+            groups.setdefault(Laminate(laminate_at(pieces, s, Z, layup.stacking), shape), []).append(element)
         return cls(
             mesh=grid,
             half_length_mm=(design.window_width_mm + design.rib_width_mm) / 2,

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Literal
 
 from benchlab.actuator import ShellDesign
 from benchlab.errors import UsageError
@@ -20,7 +21,8 @@ class Layup:
 
     weld_width_mm: how far the windowed fabric reaches under the strip, from the strip's edge, on either side; beyond
     slw/2 it is whole. film_under_strip: the film closes the tube, or ends where the fabric does. moulded: the shell is
-    free of bending stress as a round tube; otherwise as a flat sheet.
+    free of bending stress as a round tube; otherwise as a flat sheet. stacking: every layer has its middle on the
+    reference surface, as shell programs idealise it; or fabric and strip lie outside of the film, as they are glued.
     """
 
     name: str
@@ -33,6 +35,7 @@ class Layup:
     film_under_strip: bool = True
     weld_width_mm: float = 0.0
     moulded: bool = True
+    stacking: Literal["middle", "outside"] = "middle"
 
     def __post_init__(self) -> None:
         for name in ("film_thickness_mm", "fabric_thickness_mm", "strip_thickness_mm"):
@@ -90,13 +93,14 @@ def pieces_of(design: ShellDesign, layup: Layup) -> tuple[Piece, ...]:
     return tuple(pieces)
 
 
-def laminate_at(pieces: Sequence[Piece], s: float, Z: float) -> tuple[Layer, ...]:
-    """The layers at a point, inner first. The film is the first piece; what lies on it starts at its outer face."""
+def laminate_at(pieces: Sequence[Piece], s: float, Z: float, stacking: str = "middle") -> tuple[Layer, ...]:
+    """The layers at a point, inner first; the film is the first piece."""
     film = pieces[0]
-    z = -film.thickness_mm / 2 if film.covers(s, Z) else film.thickness_mm / 2
+    outside = -film.thickness_mm / 2 if film.covers(s, Z) else film.thickness_mm / 2
     layers = []
     for piece in pieces:
         if piece.covers(s, Z):
-            layers.append(Layer(piece.name, piece.law, z, z + piece.thickness_mm))
-            z += piece.thickness_mm
+            bottom = outside if stacking == "outside" else -piece.thickness_mm / 2
+            layers.append(Layer(piece.name, piece.law, bottom, bottom + piece.thickness_mm))
+            outside += piece.thickness_mm
     return tuple(layers)

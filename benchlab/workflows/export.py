@@ -69,7 +69,7 @@ def deck_of(design: ShellDesign, layup: Layup, settings: ExportSettings) -> tupl
     if settings.engine == "abaqus":
         lines = heading(tube, settings.pressure_MPa, "abaqus", None)
         return cut_in_four(tube), abaqus_deck(tube, settings.pressures_MPa, lines)
-    model = {"shell": lambda tube: tube, "sheets": sheets_of, "solid": solid_of}[settings.elements or "solid"](tube)
+    model = {"shell": lambda tube: tube, "sheets": sheets_of, "solid": solid_of}[settings.elements or "sheets"](tube)
     lines = heading(model, settings.pressure_MPa, "calculix", settings.bulk_over_shear)
     return model, calculix_deck(model, settings.pressures_MPa, lines, settings.bulk_over_shear)
 
