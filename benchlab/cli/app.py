@@ -13,9 +13,11 @@ import benchlab
 from benchlab.cli.analyze import analyze
 from benchlab.cli.calibrate import calibrate
 from benchlab.cli.cut import cut
+from benchlab.cli.design import design
 from benchlab.cli.export import export
 from benchlab.cli.fit_material import fit_material
 from benchlab.cli.sample_data import sample_data
+from benchlab.cli.sweep import sweep
 from benchlab.errors import BenchlabError, printable
 
 EXIT_BUG, EXIT_INTERRUPTED = 1, 130
@@ -38,9 +40,11 @@ def cli(debug: bool) -> None:
 cli.add_command(analyze)
 cli.add_command(calibrate)
 cli.add_command(cut)
+cli.add_command(design)
 cli.add_command(export)
 cli.add_command(fit_material)
 cli.add_command(sample_data)
+cli.add_command(sweep)
 
 
 def run(arguments: list[str] | None = None) -> None:

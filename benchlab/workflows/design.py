@@ -1,0 +1,369 @@
+"""`benchlab design`: which window and strip widths bend to an angle; the choice and its trade-offs out."""
+
+from __future__ import annotations
+
+import csv
+import functools
+import math
+import tempfile
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchlab.actuator import ShellDesign
+from benchlab.errors import BenchlabError, InputError, UsageError
+from benchlab.io.design_file import write_design
+from benchlab.io.files import cannot_write, written_whole
+from benchlab.simulation import inverse
+from benchlab.workflows.cluster import run_anywhere
+from benchlab.workflows.simulated import Study, simulate_design
+
+TW, SLW = "window_width_mm", "strip_width_mm"
+LINES, NODES = 11, 8
+"""Lines of fixed tw (or slw) that are searched, and places on each where the first simulations are."""
+
+ROUNDED_MM = 0.01
+TOLERANCE_DEG = 0.5
+"""A design found is rounded to ROUNDED_MM and simulated again; it is left out where that is further from the angle."""
+
+CUT_ERROR_MM = 0.1
+_SLOPE_STEP_MM = 0.25  # less, and the steps of the mesh are seen
+
+PREFERENCES = {
+    "least_cut_error": "least change of angle by cutting errors",
+    "least_volume": "least volume",
+    "most_force": "most blocked force",
+    "least_film_strain": "least strained film",
+}
+"""What a design may be the best in."""
+
+Span = tuple[tuple[float, ...], bool]
+Progress = Callable[[int, int | None], None]
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What is looked for. tw_mm, slw_mm: (low, high) and True, or values and False. base: the other dimensions."""
+
+    angle_deg: float
+    force_N: float | None
+    tw_mm: Span
+    slw_mm: Span
+    base: ShellDesign
+
+    def __post_init__(self) -> None:
+        for name, value in (("--angle-deg", self.angle_deg), ("--force-N", self.force_N)):
+            if value is not None and not 0 < value < math.inf:
+                raise UsageError(f"{name} is {value:g}", hint="give a positive number")
+        if not (self.tw_mm[1] or self.slw_mm[1]):
+            raise UsageError("--tw-mm and --slw-mm are both fixed", hint="give one of them as a range, START:END")
+
+    @property
+    def along(self) -> str:
+        """The dimension that is solved for on each line."""
+        return SLW if self.slw_mm[1] else TW
+
+    @property
+    def across(self) -> str:
+        return TW if self.along == SLW else SLW
+
+    def lines(self) -> tuple[float, ...]:
+        """Values of the dimension that is fixed on each line."""
+        values, between = self.tw_mm if self.across == TW else self.slw_mm
+        if not between:
+            return values
+        low, high = values
+        found = inverse.whole_window_widths(low, high, self.base.length_mm, self.base.rib_width_mm, LINES)
+        if not found:
+            hint = "widen the range, or give --tw-mm as a list"
+            raise UsageError(f"no whole number of windows fits with tw between {low:g} and {high:g} mm", hint=hint)
+        return found
+
+    def nodes(self) -> np.ndarray:
+        (low, high), _ = self.slw_mm if self.along == SLW else self.tw_mm
+        for value in (low, high):
+            self.design(self.lines()[0], value)  # raises for what cannot be made
+        return inverse.nodes_between(low, high, NODES)
+
+    def design(self, across: float, along: float) -> ShellDesign:
+        return replace(self.base, **{self.across: across, self.along: along})
+
+
+@dataclass(frozen=True)
+class AngleMap:
+    """True angles at the last pressure: on lines (L,) at nodes (N,), angle_deg (L, N), NaN where there is none; and on each line
+    with what was added near its peak, sorted: places and angles."""
+
+    lines: np.ndarray
+    nodes: np.ndarray
+    angle_deg: np.ndarray
+    refined: tuple[tuple[np.ndarray, np.ndarray], ...]
+
+
+def design(
+    wish: Wish,
+    study: Study,
+    out: Path,
+    *,
+    jobs: int = 1,
+    scheduler: str | None = None,
+    overwrite: bool = False,
+    progress: Progress | None = None,
+) -> dict[str, Any]:
+    """Find designs that bend to an angle at the last pressure of `study`, and write a table, a figure and the best of them.
+
+    Returns what was found, as `--json` shows it. Raises UsageError where the angle (or the force) is not reached, with the
+    largest that is; InputError where the disk refuses.
+    """
+    started = time.monotonic()
+    paths = _paths(out, wish, overwrite)
+    run = functools.partial(_run, jobs=jobs, scheduler=scheduler, progress=progress)
+    angles = _map(wish, study, run)
+    places = [
+        (float(line), bracket)
+        for line, (x, y) in zip(angles.lines, angles.refined)
+        for bracket in inverse.brackets(x, y, wish.angle_deg)
+    ]
+    if not places:
+        raise _unreached(wish, study, angles)
+    found = [c for c in run(places, functools.partial(_candidate, wish=wish, study=study)) if c]
+    candidates = sorted(found, key=lambda c: (c["tw_mm"], c["slw_mm"]))
+    if not candidates:
+        raise UsageError(
+            "no design found holds its angle when simulated again", hint="take another --material or range"
+        )
+    enough = _check_force(wish, study, candidates)
+    best = {name: enough[row] for name, row in _best(candidates, enough).items()}
+    _write(wish, study, angles, candidates, best, paths)
+    return {
+        "angle_deg": wish.angle_deg,
+        "pressure_MPa": study.pressures_MPa[-1],
+        "force_N": wish.force_N,
+        "fixture": str(study.fixture),
+        "material": study.layup.name,
+        "base": asdict(wish.base),
+        "largest_angle": _extreme(wish, angles, np.nanargmax),
+        "candidates": candidates,
+        "best": best,
+        "outputs": [str(path) for name, path in paths.items() if name in ("table", "figure") or name in best],
+        "seconds": round(time.monotonic() - started, 3),
+    }
+
+
+def _paths(out: Path, wish: Wish, overwrite: bool) -> dict[str, Path]:
+    """What will be written, by name. Raises UsageError where something is in the way."""
+    stem = f"design_{wish.angle_deg:g}deg"
+    paths = {"table": out / f"{stem}.csv", "figure": out / f"{stem}.png"}
+    paths |= {name: out / f"{stem}_{name}.yaml" for name in ("balanced", *PREFERENCES)}
+    if not out.absolute().is_dir():
+        if out.exists() or not out.absolute().parent.is_dir():
+            raise UsageError("no such folder", file=out, hint="make it, or choose another --out")
+        out.mkdir()
+    for path in paths.values():
+        if path.exists() and not overwrite:
+            raise UsageError("exists", file=path, hint="choose another --out, or replace it with --overwrite")
+    return paths
+
+
+def _run(
+    items: Sequence[Any],
+    work: Callable[[Any], dict[str, Any]],
+    jobs: int,
+    scheduler: str | None,
+    progress: Progress | None,
+) -> list[dict[str, Any] | None]:
+    """Results in the order of the items; None for those that failed. Raises the first error where all did."""
+    results: dict[Any, dict[str, Any] | None] = {}
+    errors: list[BenchlabError] = []
+    for outcome in run_anywhere(items, work, jobs, scheduler):
+        results[outcome.item] = outcome.result
+        if outcome.error:
+            errors.append(outcome.error)
+        if progress:
+            progress(len(results), len(items))
+    if errors and len(errors) == len(items):
+        raise errors[0]
+    return [results[item] for item in items]
+
+
+def _angle(point: ShellDesign, study: Study) -> dict[str, Any]:
+    """`angle_deg` at the last pressure, NaN where it bursts before."""
+    found = simulate_design(point, replace(study, blocked=False))
+    return {"angle_deg": float(found["columns"]["angle_deg"][-1])}
+
+
+def _map(wish: Wish, study: Study, run: Callable[..., list[dict[str, Any] | None]]) -> AngleMap:
+    lines, nodes = np.array(wish.lines()), wish.nodes()
+    work = functools.partial(_angle, study=study)
+
+    def angles_of(points: list[tuple[float, float]]) -> np.ndarray:
+        found = run([wish.design(float(a), float(b)) for a, b in points], work) if points else []
+        return np.array([np.nan if f is None else f["angle_deg"] for f in found])
+
+    grid = angles_of([(a, b) for a in lines for b in nodes]).reshape(len(lines), len(nodes))
+    peaks = [(line, inverse.spline_peak(nodes, row)) for line, row in zip(lines, grid)]
+    wanted = [(float(line), peak) for line, peak in peaks if peak is not None]
+    more = dict(zip([line for line, _ in wanted], zip([p for _, p in wanted], angles_of(wanted))))
+    refined = []
+    for line, row in zip(lines, grid):
+        x, y = nodes, row
+        if line in more:
+            place = int(np.searchsorted(nodes, more[line][0]))
+            x, y = np.insert(nodes, place, more[line][0]), np.insert(row, place, more[line][1])
+        refined.append((x, y))
+    return AngleMap(lines, nodes, grid, tuple(refined))
+
+
+def _candidate(place: tuple[float, inverse.Bracket], wish: Wish, study: Study) -> dict[str, Any]:
+    """The design in a bracket, by simulation; rounded, and simulated again with its neighbours and held straight."""
+    line, bracket = place
+
+    def at(point: ShellDesign) -> float:
+        return _angle(point, study)["angle_deg"]
+
+    solved = inverse.solve_bracket(
+        lambda x: at(wish.design(line, x)), bracket, wish.angle_deg, tolerance=ROUNDED_MM / 2
+    )
+    point = wish.design(line, round(solved / ROUNDED_MM) * ROUNDED_MM)
+    point = replace(point, **{wish.along: round(getattr(point, wish.along), 6)})
+    columns = simulate_design(point, study)["columns"]
+    angle = float(columns["angle_deg"][-1])
+    if not abs(angle - wish.angle_deg) <= TOLERANCE_DEG:
+        raise InputError(f"{point.name} bends {angle:.2f} deg when rounded, {wish.angle_deg:g} are wanted")
+    slopes = {name: _slope(at, point, field) for name, field in (("tw", TW), ("slw", SLW))}
+    return _plain(
+        {
+            "tw_mm": point.window_width_mm,
+            "slw_mm": point.strip_width_mm,
+            "angle_deg": angle,
+            "volume_mL": columns["volume_mL"][-1],
+            "blocked_force_N": columns["blocked_force_N"][-1],
+            "peak_film_strain": columns["peak_film_strain"][-1],
+            "dangle_dtw_deg_per_0_1mm": slopes["tw"],
+            "dangle_dslw_deg_per_0_1mm": slopes["slw"],
+            "cut_error_deg": math.hypot(*slopes.values()),
+            "whole_windows": point.whole_windows,
+            "end_margin_mm": point.end_margin_mm,
+            "tpu_area_mm2": point.tpu_area_mm2,
+        }
+    )
+
+
+def _slope(at: Callable[[ShellDesign], float], point: ShellDesign, field: str) -> float:
+    """Change of the angle by CUT_ERROR_MM in one dimension."""
+    value = getattr(point, field)
+    step = min(_SLOPE_STEP_MM, value / 4, (point.perimeter_mm - point.strip_width_mm) / 4)
+    return CUT_ERROR_MM * inverse.central_slope(lambda x: at(replace(point, **{field: x})), value, step)
+
+
+def _plain(row: dict[str, Any]) -> dict[str, Any]:
+    return {k: v if isinstance(v, int) else float(v) if math.isfinite(v) else None for k, v in row.items()}
+
+
+def _check_force(wish: Wish, study: Study, candidates: list[dict[str, Any]]) -> list[int]:
+    """Indices of the candidates that reach the force. Raises UsageError where none does."""
+    for row in candidates:
+        row["reaches_force"] = wish.force_N is None or (row["blocked_force_N"] or 0.0) >= wish.force_N
+    enough = [index for index, row in enumerate(candidates) if row["reaches_force"]]
+    if not enough:
+        most = max(candidates, key=lambda row: row["blocked_force_N"] or 0.0)
+        raise UsageError(
+            f"designs that bend {wish.angle_deg:g} deg at {study.pressures_MPa[-1]:g} MPa push with up to "
+            f"{most['blocked_force_N'] or math.nan:.1f} N (tw {most['tw_mm']:g}, slw {most['slw_mm']:g} mm, {study.fixture}), not "
+            f"{wish.force_N:g} N",
+            hint="raise --pressure-MPa or --perimeter-mm, or state the fixture of your bench",
+        )
+    return enough
+
+
+def _best(candidates: list[dict[str, Any]], enough: list[int]) -> dict[str, int]:
+    signs = {"cut_error_deg": 1, "volume_mL": 1, "blocked_force_N": -1, "peak_film_strain": 1}
+    costs = np.array(
+        [[math.nan if (v := candidates[i][name]) is None else sign * v for name, sign in signs.items()] for i in enough]
+    )
+    return inverse.best_rows(costs, tuple(PREFERENCES))
+
+
+def _extreme(wish: Wish, angles: AngleMap, which: Callable[[np.ndarray], Any]) -> dict[str, float]:
+    """The largest (or smallest) true angle that was seen, and where."""
+    rows = [(line, x, y) for line, (xs, ys) in zip(angles.lines, angles.refined) for x, y in zip(xs, ys)]
+    line, x, angle = rows[int(which(np.array([row[2] for row in rows])))]
+    point = wish.design(float(line), float(x))
+    return {"tw_mm": point.window_width_mm, "slw_mm": point.strip_width_mm, "angle_deg": float(angle)}
+
+
+def _unreached(wish: Wish, study: Study, angles: AngleMap) -> UsageError:
+    if not np.isfinite(angles.angle_deg).any():
+        return UsageError(
+            f"every design in the range bursts before {study.pressures_MPa[-1]:g} MPa",
+            hint="take a lower --pressure-MPa",
+        )
+    low, high = _extreme(wish, angles, np.nanargmin), _extreme(wish, angles, np.nanargmax)
+    at = f"{study.pressures_MPa[-1]:g} MPa"
+
+    def where(end: dict[str, float]) -> str:
+        return f"{end['angle_deg']:.1f} deg at tw {end['tw_mm']:.2f}, slw {end['slw_mm']:.2f} mm"
+
+    if wish.angle_deg > high["angle_deg"]:
+        active = wish.base.length_mm - 2 * study.cap_mm
+        longer = math.ceil(active * wish.angle_deg / high["angle_deg"] + 2 * study.cap_mm)
+        hint = f"raise --pressure-MPa, or widen the ranges, or make it longer (the angle grows with the length: --length-mm {longer})"
+        return UsageError(f"no design bends {wish.angle_deg:g} deg at {at}; the largest is {where(high)}", hint=hint)
+    if wish.angle_deg < low["angle_deg"]:
+        hint = "lower --pressure-MPa, or widen the ranges"
+        return UsageError(
+            f"every design bends more than {wish.angle_deg:g} deg at {at}; the least is {where(low)}", hint=hint
+        )
+    what = f"no line that was tried passes {wish.angle_deg:g} deg at {at}; seen are {where(low)} to {where(high)}"
+    return UsageError(what, hint="give more values to the dimension that is a list, or a range for both")
+
+
+def _write(
+    wish: Wish,
+    study: Study,
+    angles: AngleMap,
+    candidates: list[dict[str, Any]],
+    best: dict[str, int],
+    paths: dict[str, Path],
+) -> None:
+    """Everything into a hidden folder first, then into its place."""
+    from benchlab.report.design_figure import draw_design_figure
+    from benchlab.report.figures import save_png
+
+    folder = paths["table"].parent
+    try:
+        with tempfile.TemporaryDirectory(dir=folder, prefix=".design-") as hidden:
+            stage = {name: Path(hidden) / path.name for name, path in paths.items()}
+            _write_table(stage["table"], candidates, best)
+            for name, index in best.items():
+                row = candidates[index]
+                write_design(stage[name], replace(wish.base, **{TW: row["tw_mm"], SLW: row["slw_mm"]}))
+            note = f"simulated, not measured · material {study.layup.name} · blocked force: {study.fixture}"
+            title = f"Designs that bend {wish.angle_deg:g}° at {study.pressures_MPa[-1]:g} MPa"
+            swapped = wish.along == TW
+            figure = draw_design_figure(
+                angles.nodes if swapped else angles.lines,
+                angles.lines if swapped else angles.nodes,
+                angles.angle_deg.T if swapped else angles.angle_deg,
+                wish.angle_deg, candidates, best, title, note,
+            )  # fmt: skip
+            save_png(figure, stage["figure"])
+            for name, path in paths.items():
+                if stage[name].exists():
+                    stage[name].replace(path)
+    except OSError as error:
+        raise cannot_write(error, folder) from error
+
+
+def _write_table(path: Path, candidates: list[dict[str, Any]], best: dict[str, int]) -> None:
+    """A row a design; best_in names what it is the best in."""
+    with written_whole(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow([*candidates[0], "best_in"])
+        for index, row in enumerate(candidates):
+            cells = ["" if v is None else f"{v:.8g}" if isinstance(v, float) else str(v).lower() for v in row.values()]
+            writer.writerow([*cells, " ".join(name for name, chosen in best.items() if chosen == index)])
