@@ -11,7 +11,6 @@ from benchlab.actuator import ShellDesign
 from benchlab.cli.design_options import Design
 from benchlab.cli.options import Finite
 from benchlab.errors import UsageError, printable
-from benchlab.io.layup_file import DEFAULT_LAYUP
 
 
 @click.command(short_help="Finite-element deck of a design for CalculiX or Abaqus.")
@@ -31,7 +30,7 @@ from benchlab.io.layup_file import DEFAULT_LAYUP
     "--steps", type=click.IntRange(1), default=10, show_default=True, help="Equal pressure steps with results."
 )
 @click.option(
-    "--material", metavar="FILE|NAME", default=DEFAULT_LAYUP, show_default=True, help="Layup: a file, or one that is shipped."
+    "--material", metavar="FILE|NAME", help="Layup: a file, or one that is shipped. [default: from-FEM-angles]"
 )
 @click.option(
     "--elements",
@@ -63,7 +62,7 @@ def export(
     engine: str,
     cells: int | None,
     full_length: bool,
-    material: str,
+    material: str | None,
     out: Path | None,
     overwrite: bool,
     as_json: bool,
@@ -81,6 +80,7 @@ def export(
     """
     import json
 
+    from benchlab.io.layup_file import DEFAULT_LAYUP
     from benchlab.workflows.export import ExportSettings
     from benchlab.workflows.export import export as write
 
@@ -90,7 +90,7 @@ def export(
     if options["edge_mm"] is None:
         options["edge_mm"] = 0.2 if options["along_mm"] > 0.2 else None
     settings = ExportSettings(engine=engine, cells=None if full_length else cells or 4, **options)
-    found = write(design, material, settings, out or Path(f"{design.name}_{engine}.inp"), overwrite)
+    found = write(design, material or DEFAULT_LAYUP, settings, out or Path(f"{design.name}_{engine}.inp"), overwrite)
     click.echo(
         f"{found['cells']} cells, {found['element_count']} elements, {found['node_count']} nodes, "
         f"{len(found['pressures_MPa'])} pressures; wrote {printable(found['deck'])}",

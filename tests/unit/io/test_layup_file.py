@@ -46,7 +46,7 @@ def test_trial_says_that_it_is_guessed() -> None:
 @pytest.mark.parametrize("name", shipped_layups())
 def test_every_shipped_layup_is_named_as_its_file_and_says_where_it_is_from(name: str) -> None:
     layup = read_layup(name)
-    assert layup.name == name and len(layup.origin) > 20 and name == name.lower()
+    assert layup.name.lower() == name and len(layup.origin) > 20 and name == name.lower()
 
 
 def test_unknown_names_and_missing_files(tmp_path: Path) -> None:
