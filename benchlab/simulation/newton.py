@@ -12,7 +12,7 @@ from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 from benchlab.simulation.cell import Potential, State
 from benchlab.simulation.laws.law import FloatArray
 
-MOST_STEPS = 30
+MOST_STEPS = 25
 TOLERANCE = 1e-9
 _NO_RISE = 1e-12
 _SHIFTS = 14
@@ -34,12 +34,13 @@ def minimise(
     free: tuple[bool, bool] = (True, True),
     most_steps: int = MOST_STEPS,
     tolerance: float = TOLERANCE,
+    astray: Callable[[State], bool] = lambda state: False,
 ) -> Solved:
     """The minimum of Π next to `start`, in the fields and in those of (k, λ) that are free.
 
     Each step solves (H + μ·diag H)·δ = −g with the smallest μ that makes the matrix positive definite and the energy
     fall (Levenberg 1944). A step whose predicted gain is `tolerance` of the strain energy scale ends the search. Not
-    converged: more than `most_steps`, or no way down.
+    converged: more than `most_steps`, no way down, or a state that is `astray`.
     """
     state, here, shift = start, potential_at(start), 0.0
     border = np.array(free)
@@ -59,6 +60,8 @@ def minimise(
             return Solved(state, here, step, converged=False)
         small = gain <= tolerance**2 * max(abs(here.value), 1e-6) and shift == 0
         state, here = trial, there
+        if astray(state):
+            return Solved(state, here, step + 1, converged=False)
         if small:
             return Solved(state, here, step + 1, converged=True)
         shift = 0.0 if shift <= 1e-4 else shift / 8

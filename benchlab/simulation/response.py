@@ -100,8 +100,14 @@ def _reach(
     while True:
         target = min(pressure, reached + step)
         guess = _extrapolated(known, target) if known else start
-        solved = minimise(lambda at, p=target: cell.potential(at, p), guess, free)  # type: ignore[misc]
-        if solved.converged and _grows_steadily(cell, solved.state, known[-1][1] if known else start):
+        most = _LARGEST_GROWTH * cell.volume_mm3(known[-1][1] if known else start)
+        solved = minimise(
+            lambda at, p=target: cell.potential(at, p),  # type: ignore[misc]
+            guess,
+            free,
+            astray=lambda at, most=most: cell.volume_mm3(at) > most,  # type: ignore[misc]
+        )
+        if solved.converged:
             known.append((target, solved.state))
             if target == pressure:
                 return solved
@@ -110,10 +116,6 @@ def _reach(
             return None
         else:
             step /= 4
-
-
-def _grows_steadily(cell: Cell, state: State, before: State) -> bool:
-    return cell.volume_mm3(state) <= _LARGEST_GROWTH * cell.volume_mm3(before)
 
 
 def _extrapolated(known: list[tuple[float, State]], pressure: float) -> State:
