@@ -10,8 +10,8 @@ import numpy as np
 from benchlab.report.figures import DPI, _figure_class
 from benchlab.report.panels import GREY
 from benchlab.report.wording import drawable
-from benchlab.simulation.fit_law import LawFit, Specimen
 from benchlab.simulation.laws.homogeneous import MODES, nominal_stress_MPa
+from benchlab.simulation.tensile.fit_law import LawFit, Specimen
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,6 +8,7 @@ import numpy as np
 
 from benchlab.simulation.cell import FIELDS, Cell, State
 from benchlab.simulation.laws.law import FloatArray, Law
+from benchlab.simulation.laws.stability import tangent_MPa
 from benchlab.simulation.shell import metric_at, strains
 
 
@@ -135,3 +136,10 @@ def extremes(layers: tuple[LayerStress, ...]) -> Extremes:
     film = [layer.sheet.stretch.max() for layer in layers if layer.law.incompressible]
     fabric = [layer.sheet.von_mises_MPa.max() for layer in layers if not layer.law.incompressible]
     return Extremes(float(max(film, default=np.nan)), float(max(fabric, default=np.nan)))
+
+
+def unstable_share(layers: tuple[LayerStress, ...]) -> float:
+    """Share of the film's integration points at whose stretches its law is not stable after Drucker; 0 where there is no film."""
+    film = [layer for layer in layers if layer.law.incompressible]
+    stable = [np.linalg.eigvalsh(tangent_MPa(layer.law, *layer.sheet.stretch.T))[:, 0] > 0 for layer in film]
+    return 1 - float(np.mean(np.concatenate(stable))) if stable else 0.0

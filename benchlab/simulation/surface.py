@@ -91,6 +91,15 @@ def whole_actuator(
     return _with_caps(surface, state, cell.radius_mm + height_mm, bent, cap_mm) if cap_mm else surface
 
 
+def sections_mm(cell: Cell, state: State, per_element: int = 8) -> dict[str, FloatArray]:
+    """Outlines of the cell's two planes of symmetry across the axis, "mid rib" and "mid window": (m, 2), across and from x = 0."""
+    half = _around(_quarter(cell, state, per_element, 0.0))
+    return {
+        name: np.stack([half.y[:, column], half.x[:, column]], axis=1)
+        for name, column in (("mid rib", 0), ("mid window", -1))
+    }
+
+
 def _quarter(cell: Cell, state: State, per_element: int, height_mm: float) -> _Quarter:
     """The nine-node elements are products of quadratics on a grid of lines, so that sampling along s and Z is exact."""
     s, Z = (np.unique(np.round(axis, 9)) for axis in cell.mesh.nodes_mm.T)

@@ -15,10 +15,10 @@ from benchlab.io.layup_file import write_layup
 from benchlab.io.tensile import SpecimenSize, read_tensile
 from benchlab.report.figures import save_png
 from benchlab.report.material_figure import draw_material_figure
-from benchlab.simulation.fit_law import LawFit, Specimen, fit_laws, recommended, thinned
-from benchlab.simulation.fit_models import SOLVERS
 from benchlab.simulation.layup import Layup
-from benchlab.simulation.tensile_curve import loading_curve
+from benchlab.simulation.tensile.curve import loading_curve
+from benchlab.simulation.tensile.fit_law import LawFit, Specimen, fit_laws, recommended, thinned
+from benchlab.simulation.tensile.models import SOLVERS
 
 
 @dataclass(frozen=True)

@@ -3,9 +3,9 @@
 import numpy as np
 
 from benchlab.report.material_figure import draw_material_figure
-from benchlab.simulation.fit_law import Specimen, fit_laws
 from benchlab.simulation.laws import Polynomial
 from benchlab.simulation.laws.homogeneous import nominal_stress_MPa
+from benchlab.simulation.tensile.fit_law import Specimen, fit_laws
 
 STRETCH = np.linspace(1.0, 2.0, 30)
 TEST = Specimen(STRETCH, nominal_stress_MPa(Polynomial(0.4), STRETCH))

@@ -6,7 +6,7 @@ from scipy.optimize import brentq
 
 from benchlab.simulation.laws import Law, Ogden, Polynomial
 from benchlab.simulation.laws.homogeneous import MODES
-from benchlab.simulation.stability import is_stable, stable_ranges, tangent_MPa
+from benchlab.simulation.laws.stability import is_stable, stable_ranges, tangent_MPa
 
 LAWS = [Polynomial(0.4), Polynomial(0.3, 0.1, 0.02, -0.01, 0.01), Ogden((0.63, 0.0012, -0.01), (1.3, 5.0, -2.0))]
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from benchlab.errors import InputError
-from benchlab.simulation.tensile_curve import loading_curve
+from benchlab.simulation.tensile.curve import loading_curve
 
 
 def neo_hooke(stretch: np.ndarray) -> np.ndarray:

@@ -9,13 +9,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from benchlab.errors import InputError, UsageError
-from benchlab.simulation.biaxial import PLAUSIBLE, biaxial_factor
-from benchlab.simulation.fit_models import SOLVERS, Solution
-from benchlab.simulation.fit_regression import equal_weights, inseparable, precision
 from benchlab.simulation.laws import Law
+from benchlab.simulation.laws.biaxial import PLAUSIBLE, biaxial_factor
 from benchlab.simulation.laws.homogeneous import MODES, nominal_stress_MPa
 from benchlab.simulation.laws.law import FloatArray
-from benchlab.simulation.stability import SEARCHED, StableRange, is_stable, stable_ranges
+from benchlab.simulation.laws.stability import SEARCHED, StableRange, is_stable, stable_ranges
+from benchlab.simulation.tensile.models import SOLVERS, Solution
+from benchlab.simulation.tensile.regression import equal_weights, inseparable, precision
 
 LEAST_POINTS = 12.0
 """Independent points that a comparison of laws grants the tests at least."""

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from benchlab.simulation.biaxial import PLAUSIBLE, biaxial_factor
 from benchlab.simulation.laws import Ogden, Polynomial
+from benchlab.simulation.laws.biaxial import PLAUSIBLE, biaxial_factor
 
 
 def test_laws_of_the_first_invariant_alone_have_factor_one() -> None:

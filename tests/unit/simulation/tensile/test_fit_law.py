@@ -7,10 +7,10 @@ import pytest
 from scipy.stats import t as student
 
 from benchlab.errors import InputError, UsageError
-from benchlab.simulation.fit_law import Specimen, fit_law, fit_laws, recommended, thinned
-from benchlab.simulation.fit_models import SOLVERS
 from benchlab.simulation.laws import Law, Ogden, Polynomial
 from benchlab.simulation.laws.homogeneous import nominal_stress_MPa
+from benchlab.simulation.tensile.fit_law import Specimen, fit_law, fit_laws, recommended, thinned
+from benchlab.simulation.tensile.models import SOLVERS
 
 STRETCH = np.linspace(1.02, 4.0, 120)
 TRUTH: dict[str, Law] = {
