@@ -66,7 +66,7 @@ def design(
     \b
     Examples:
       benchlab design --angle-deg 90
-      benchlab design --angle-deg 60 --pressure-MPa 0.2 --force-N 10 --lever-arm-mm 7.5 --out results
+      benchlab design --angle-deg 60 --pressure-MPa 0.2 --force-N 10 --lever-arm-mm 5 --out results
       benchlab design --angle-deg 45 --tw-mm 3 --slw-mm 10:30
     """
     import json

@@ -19,7 +19,11 @@ OPTIONS = (
         metavar="FILE|NAME",
         help="Layup: a file, or one that is shipped. [default: the one of `benchlab simulate`]",
     ),
-    click.option("--lever-arm-mm", type=Finite("MM"), help="Blocked force is the moment at this arm. [default: 7.5]"),
+    click.option(
+        "--lever-arm-mm",
+        type=Finite("MM"),
+        help="Blocked force is the moment at this arm. [default: the arm that makes the published force the simulated moment]",
+    ),
     click.option("--contact-area-mm2", type=Finite("MM2"), help="Or: blocked force is the pressure on this area."),
     click.option("--jobs", type=click.IntRange(1), help="Designs at once, one core each. [default: all cores]"),
     click.option(

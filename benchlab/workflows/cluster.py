@@ -109,9 +109,11 @@ def _outcome(future: Any, item: Item, scheduler: str) -> Outcome[Item]:
         found: Outcome[Item] = future.result()
     except KilledWorker:
         return Outcome(item, None, BatchError("its workers died, one after another", hint="have they enough memory?"))
-    except ImportError as error:
-        what = f"a worker of {scheduler} cannot import what it needs: {error}"
-        raise UsageError(what, hint="install the same benchlab on all computers") from error
+    except (ImportError, RuntimeError) as error:
+        if isinstance(error, RuntimeError) and "deserialization" not in str(error):
+            raise
+        what = f"the scheduler at {scheduler} or a worker of it cannot import what it needs"
+        raise UsageError(what, hint="install the same benchlab on all these computers") from error
     if isinstance(found.error, UsageError) and found.error.what.startswith("a worker has benchlab"):
         raise found.error
     return found

@@ -20,17 +20,21 @@ from benchlab.io.layup_file import layup_document
 from benchlab.simulation.actuator_response import Fixture, actuator_response
 from benchlab.simulation.film_strain import peak_film_strain
 from benchlab.simulation.layup import Layup
+from benchlab.simulation.response import check_pressures
 
 
 @dataclass(frozen=True)
 class Study:
-    """What is the same for all designs. blocked: they are also held straight."""
+    """What is the same for all designs. blocked: they are also held straight. Raises UsageError for impossible pressures."""
 
     layup: Layup
     pressures_MPa: tuple[float, ...]
     fixture: Fixture
     cap_mm: float = 0.0
     blocked: bool = True
+
+    def __post_init__(self) -> None:
+        check_pressures(self.pressures_MPa)
 
     def as_json(self) -> dict[str, Any]:
         return {

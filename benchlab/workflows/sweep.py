@@ -70,9 +70,11 @@ def sweep(
 ) -> dict[str, Any]:
     """Simulate all combinations of `axes` (names of AXES -> values in mm) and write STEM.h5, .csv and .png into `out`.
 
-    Designs that an earlier, even interrupted, run wrote there with the same study and code are not simulated again. A design that
-    cannot be made or simulated is a row with its reason. Returns what was found, as `--json` shows it. Raises UsageError and
-    InputError; BatchError where a cluster is lost, and KeyboardInterrupt, after what is done has been written as partial.
+    Designs that an earlier, even interrupted, run wrote there with the same study and code are not simulated again. A design
+    that cannot be made or simulated is a row with its reason. Returns what was found, as `--json` shows it.
+
+    Raises UsageError and InputError, also where no design at all can be simulated; BatchError where a cluster is lost, and
+    KeyboardInterrupt, after what is done has been written as partial.
     """
     started = time.monotonic()
     designs = _designs(axes)
@@ -82,7 +84,7 @@ def sweep(
         done = _Progressing([study.key(d) if isinstance(d, ShellDesign) else "" for d in designs])
         _take_over(outputs.run_file, done, overwrite)
         reused = len(done.results)
-        whole = False
+        partial = True
         try:
             _simulate(
                 designs,
@@ -93,9 +95,12 @@ def sweep(
                 progress,
                 lambda: _save(axes, designs, study, done, outputs, True),
             )
-            whole = True
+            partial = False
         finally:
-            found = _save(axes, designs, study, done, outputs, partial=not whole)
+            if done.results:
+                found = _save(axes, designs, study, done, outputs, partial)
+    if not done.results:
+        raise next(error for error in map(_failure, designs, map(done.errors.get, done.keys)) if error)
     failed = [_failure(design, done.errors.get(key)) for design, key in zip(designs, done.keys)]
     return {
         **_summary(found, outputs),
