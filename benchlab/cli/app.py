@@ -17,6 +17,7 @@ from benchlab.cli.design import design
 from benchlab.cli.export import export
 from benchlab.cli.fit_material import fit_material
 from benchlab.cli.sample_data import sample_data
+from benchlab.cli.simulate import simulate
 from benchlab.cli.sweep import sweep
 from benchlab.errors import BenchlabError, printable
 
@@ -44,6 +45,7 @@ cli.add_command(design)
 cli.add_command(export)
 cli.add_command(fit_material)
 cli.add_command(sample_data)
+cli.add_command(simulate)
 cli.add_command(sweep)
 
 

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from hashlib import sha256 as new_sha256
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import benchlab
 from benchlab.errors import UsageError
@@ -117,7 +117,7 @@ class Outputs:
         return {**provenance["summary"], "status": "current"}
 
     @contextmanager
-    def staged(self) -> Iterator[Outputs]:
+    def staged(self) -> Iterator[Self]:
         """The same files in a hidden folder beside their place; they are moved there together when the block ends well.
 
         Raises InputError where the disk refuses; then nothing in the folder has changed.

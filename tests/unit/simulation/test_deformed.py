@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 
 from benchlab.simulation.cell import FIELDS, State
-from benchlab.simulation.deformed import extremes, layer_stresses, node_positions_mm, sheet_stress, to_space
+from benchlab.simulation.deformed import (
+    LayerStress,
+    extremes,
+    layer_stresses,
+    node_positions_mm,
+    sheet_stress,
+    to_space,
+    unstable_share,
+)
 from benchlab.simulation.laws import Ogden, Polynomial, StVenantKirchhoff
 from benchlab.simulation.laws.law import uniaxial_stress_MPa
 from benchlab.simulation.response import follow
@@ -108,3 +116,17 @@ def test_stretches_of_a_stretched_tube_and_where_they_are():
     assert layer.places_mm.min() > 0 and layer.places_mm[:, 0].max() < np.pi * R
     found = extremes((layer,))
     assert np.isnan(found.film_stretch) and found.fabric_stress_MPa == layer.sheet.von_mises_MPa.max()
+
+
+def test_share_of_the_film_where_the_law_is_not_stable():
+    # Mooney and Rivlin's law with C01 < 0: the tangent across a sheet stretched both ways, 4·(C10 + λ²·C01)·(λ² + λ⁻⁴) along
+    # (1, −1), is lost at λ² = −C10/C01 = 2.
+    law = Polynomial(C10=1.0, C01=-0.5)
+    squares = np.array([1.0, 1.2, 1.4, 2.1])
+    C = np.stack([squares, squares, 0 * squares], axis=1)
+    odd = LayerStress("film", law, np.zeros((4, 2)), sheet_stress(law, C))
+    fabric = LayerStress("rib", StVenantKirchhoff(), np.zeros((4, 2)), sheet_stress(StVenantKirchhoff(), C))
+    assert unstable_share((odd, fabric)) >= 0.25
+    firm = Polynomial(C10=1.0)
+    assert unstable_share((LayerStress("film", firm, np.zeros((4, 2)), sheet_stress(firm, C)), fabric)) == 0
+    assert unstable_share((fabric,)) == 0

@@ -1,0 +1,206 @@
+"""`benchlab simulate`: one design in, its response curves and pictures out."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from benchlab.actuator import ShellDesign
+from benchlab.errors import InputError, UsageError
+from benchlab.io.files import sha256
+from benchlab.io.layup_file import layup_document
+from benchlab.io.nexus import plain
+from benchlab.io.response_file import read_response_provenance, write_response_csv, write_response_file
+from benchlab.simulation.actuator_response import ActuatorResponse, actuator_response, tip_force_N, tip_position_mm
+from benchlab.simulation.deformed import extremes, layer_stresses, unstable_share
+from benchlab.simulation.film_strain import peak_film_strain
+from benchlab.simulation.laws.law import FloatArray
+from benchlab.simulation.response import hold
+from benchlab.workflows.outputs import Outputs
+from benchlab.workflows.provenance import made_by
+from benchlab.workflows.simulated import Study, code_digest
+
+LARGEST_TIP_ANGLE_DEG = 350.0
+STATEMENT = "simulated with a finite-element cell of the shell, not measured"
+
+
+@dataclass(frozen=True)
+class SimulateOutputs(Outputs):
+    """`<stem>.h5`, `.csv`, `.png` and `.cell.png`; the response file of an earlier simulation vouches for the others."""
+
+    @property
+    def cell_figure(self) -> Path:
+        return self.folder / f"{self.stem}.cell.png"
+
+    def paths(self, overlay: bool = False) -> list[Path]:
+        return [self.run_file, self.table, self.figure, self.cell_figure]
+
+    def _written_before(self) -> dict[str, str]:
+        provenance = read_response_provenance(self.run_file)
+        return {} if provenance is None else {self.run_file.name: "any", **provenance.get("outputs_sha256", {})}
+
+
+def simulate(
+    design: ShellDesign,
+    study: Study,
+    out: Path,
+    name: str | None = None,
+    tip_force_at_deg: float | None = None,
+    overwrite: bool = False,
+) -> dict[str, Any]:
+    """Simulate a design at the study's pressures, and write NAME.h5, .csv, .png and .cell.png into `out`, all or none.
+
+    name: of the files, the design's where None. tip_force_at_deg: also the force of the tip when held at this angle. Returns
+    what was found, as `--json` shows it. Pressures beyond a limit have no result; a warning names it.
+    Raises UsageError, and InputError where the first pressure is beyond the limit; then nothing was written.
+    """
+    outputs = SimulateOutputs(out, _checked_name(name or design.name), overwrite)
+    if tip_force_at_deg is not None and not abs(tip_force_at_deg) <= LARGEST_TIP_ANGLE_DEG:
+        raise UsageError(
+            f"--tip-force-at-deg is {tip_force_at_deg:g}", hint=f"give an angle up to {LARGEST_TIP_ANGLE_DEG:g} degrees"
+        )
+    outputs.check(overlay=False, inputs=())
+    with outputs.locked(), threadpool_limits(1):
+        response = actuator_response(
+            design, study.layup, study.pressures_MPa, study.fixture, study.cap_mm, blocked=study.blocked
+        )
+        if not len(response.pressure_MPa):
+            raise _no_state(design, study, response)
+        layers = [layer_stresses(response.cell, point.state) for point in response.free.points]
+        unstable = np.array([unstable_share(found) for found in layers])
+        extras = _extras(response, layers, tip_force_at_deg)
+        warnings = _warnings(study, response, unstable)
+        about = _about(response, warnings, tip_force_at_deg)
+        _save(response, study, extras, about, outputs)
+    points = {**response.columns(), **_tip(response), **extras}
+    rows: Any = plain([dict(zip(points, values)) for values in zip(*points.values())])
+    return {**about, "points": rows, "outputs": [str(path) for path in outputs.paths()]}
+
+
+def _checked_name(name: str) -> str:
+    if name != Path(name).name or name.startswith(".") or not name.isprintable():
+        raise UsageError(f"{name!r} is no name for files", hint="give --name without folders, and --out for the folder")
+    return name
+
+
+def _no_state(design: ShellDesign, study: Study, response: ActuatorResponse) -> InputError:
+    limit = response.limit_pressure_MPa or 0.0
+    return InputError(
+        f"{design.name} with material {study.layup.name} has no stable state at {study.pressures_MPa[0]:g} MPa; the last one "
+        f"found is at {limit:.4g} MPa, its limit pressure",
+        hint=f"ask for pressures up to {limit:.4g} MPa, or take a stiffer material",
+    )
+
+
+def _extras(response: ActuatorResponse, layers: list[Any], tip_force_at_deg: float | None) -> dict[str, FloatArray]:
+    found = [extremes(each) for each in layers]
+    extras = {
+        "max_film_stretch": np.array([each.film_stretch for each in found]),
+        "peak_film_strain": np.array([peak_film_strain(response.cell, point.state) for point in response.free.points]),
+        "max_fabric_stress_MPa": np.array([each.fabric_stress_MPa for each in found]),
+    }
+    if tip_force_at_deg is not None:
+        extras["tip_force_N"] = _tip_forces(response, math.radians(tip_force_at_deg))
+    return extras
+
+
+def _tip_forces(response: ActuatorResponse, angle_rad: float) -> FloatArray:
+    """Force at the end of the bending length, held at an angle; NaN where no stable state was found."""
+    bent = response.design.length_mm - 2 * response.cap_mm
+    held = [hold(response.cell, point, angle_rad / bent) for point in response.free.points]
+    return np.array(
+        [
+            np.nan if at is None else tip_force_N(np.array(at.moment_Nmm), np.array(angle_rad), at.state.lam * bent)
+            for at in held
+        ],
+        dtype=float,
+    )
+
+
+def _tip(response: ActuatorResponse) -> dict[str, FloatArray]:
+    """Where the tip is: an arc of constant curvature between two straight caps, the base at the origin."""
+    cap, angle = response.cap_mm, response.angle_rad
+    arc = tip_position_mm(angle, response.axial_stretch * (response.design.length_mm - 2 * cap))
+    return {
+        "tip_towards_strip_mm": arc[:, 0] + cap * np.sin(angle),
+        "tip_along_mm": arc[:, 1] + cap * (1 + np.cos(angle)),
+    }
+
+
+def _warnings(study: Study, response: ActuatorResponse, unstable: FloatArray) -> list[str]:
+    found = []
+    reached, asked = len(response.pressure_MPa), len(study.pressures_MPa)
+    if response.limit_pressure_MPa is not None:
+        found.append(
+            f"limit pressure: no stable state was found beyond {response.limit_pressure_MPa:.4g} MPa, where the film bursts or the "
+            f"shell snaps to another shape; {reached} of {asked} pressures have a result"
+        )
+    straight = np.isfinite(response.moment_Nmm)
+    if study.blocked and not straight.all():
+        first = response.pressure_MPa[int(np.argmin(straight))]
+        found.append(
+            f"held straight, no stable state was found from {first:g} MPa on: no moment and no blocked force there"
+        )
+    if (unstable > 0).any():
+        at = int(np.argmax(unstable > 0))
+        found.append(
+            f"the film law of material {study.layup.name} is not stable (Drucker) at {100 * unstable[-1]:.2g} % of the film's points at "
+            f"{response.pressure_MPa[-1]:g} MPa, the first at {response.pressure_MPa[at]:g} MPa: results from there on may be "
+            "those of the law alone; fit it to larger stretches, biaxial ones too"
+        )
+    return found
+
+
+def _about(response: ActuatorResponse, warnings: list[str], tip_force_at_deg: float | None) -> dict[str, Any]:
+    """What was simulated and how, without the curves."""
+    design, layup, mesh = response.design, response.layup, response.cell.mesh
+    return {
+        "design": {"name": design.name, **asdict(design), "window_length_mm": design.window_length_mm},
+        "material": {"name": layup.name, "origin": layup.origin},
+        "statement": STATEMENT,
+        "fixture": {**asdict(response.fixture), "words": str(response.fixture)},
+        "cap_mm": response.cap_mm,
+        "tip_force_at_deg": tip_force_at_deg,
+        "mesh": {"elements": len(mesh.elements), "nodes": len(mesh.nodes_mm)},
+        "limit_pressure_MPa": response.limit_pressure_MPa,
+        "seconds": round(response.seconds, 3),
+        "warnings": warnings,
+    }
+
+
+def _save(
+    response: ActuatorResponse,
+    study: Study,
+    extras: dict[str, FloatArray],
+    about: dict[str, Any],
+    outputs: SimulateOutputs,
+) -> None:
+    """Write table, figures and the response file that vouches for them, all or none."""
+    from benchlab.report.figures import save_png
+    from benchlab.report.response_figure import draw_cell_figure, draw_response_figure
+
+    simulation = {key: value for key, value in about.items() if key not in ("design", "material", "warnings")}
+    with outputs.staged() as stage:
+        write_response_csv(stage.table, response)
+        save_png(draw_response_figure(response), stage.figure)
+        save_png(draw_cell_figure(response), stage.cell_figure)
+        digests = {path.name: sha256(path) for path in (stage.table, stage.figure, stage.cell_figure)}
+        write_response_file(
+            stage.run_file,
+            response,
+            extras=extras,
+            design=about["design"],
+            material=layup_document(study.layup),
+            simulation={**simulation, "study": study.as_json()},
+            provenance={
+                **made_by("numpy", "scipy", "skfem", "h5py"),
+                "code_sha256": code_digest(),
+                "outputs_sha256": digests,
+            },
+            warnings=about["warnings"],
+        )
