@@ -142,7 +142,7 @@ def _write_words(figure: Figure, response: ActuatorResponse, what: str) -> None:
     caps = f", caps {response.cap_mm:g} mm" if response.cap_mm else ""
     note = (
         f"tw {design.window_width_mm:g}, slw {design.strip_width_mm:g}, fw {design.rib_width_mm:g}, "
-        f"perimeter {design.perimeter_mm:g}, al {design.length_mm:g} mm{caps}; material {layup.name}: {layup.origin}"
+        f"perimeter {design.perimeter_mm:g}, al {design.length_mm:g} mm{caps}; material {layup.name}"
     )
     style: dict[str, Any] = {"parse_math": False}
     room = int(figure.get_size_inches()[0] / 0.083)

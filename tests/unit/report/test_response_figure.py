@@ -18,7 +18,7 @@ from benchlab.simulation.surface import whole_actuator
 
 @pytest.fixture(scope="module")
 def response() -> ActuatorResponse:
-    layup = Layup("t", "$guessed$ \x1b", film=Polynomial(C10=1.5, C20=3.0))
+    layup = Layup("$t$ \x1b", "guessed", film=Polynomial(C10=1.5, C20=3.0))
     return actuator_response(ShellDesign(10, 9), layup, [0.0, 0.1], cap_mm=10)
 
 
@@ -33,7 +33,7 @@ def words(figure) -> str:
 
 def test_the_figure_says_what_it_is_of(response) -> None:
     found = words(draw_response_figure(response))
-    for part in ("tw9_slw10, simulated", f"{response.angle_deg[-1]:.1f}° at 0.1 MPa", "material t: $guessed$", "caps 10 mm",
+    for part in ("tw9_slw10, simulated", f"{response.angle_deg[-1]:.1f}° at 0.1 MPa", "material $t$", "caps 10 mm",
                  f"lever arm {PUBLISHED_LEVER_ARM_MM:g} mm", "blocked force (N)", "volume (mL)", "cap", "strip", "fabric rib"):  # fmt: skip
         assert part in found
     assert "simulated: one cell at 0.1 MPa" in words(draw_cell_figure(response))
