@@ -9,6 +9,7 @@ import numpy as np
 
 from benchlab.report.figures import DPI, _figure_class
 from benchlab.report.panels import GREY
+from benchlab.report.sweep_figure import dress
 from benchlab.report.wording import drawable
 
 if TYPE_CHECKING:
@@ -53,7 +54,7 @@ def draw_design_figure(
         ax = figure.add_subplot(grid[index // 2, index % 2])
         plot_candidates(ax, candidates, best, name)
         ax.margins(0.13)
-        _dress(ax, "slw (mm)", label)
+        dress(ax, "slw (mm)", label)
     figure.text(0.055, 0.945, drawable(title, 90), fontsize=12, fontweight="bold", parse_math=False)
     figure.text(0.055, 0.905, drawable(note, 140), fontsize=9.5, color=GREY, parse_math=False)
     figure.legend(
@@ -83,7 +84,7 @@ def plot_angle_map(ax: Axes, tw_mm: np.ndarray, slw_mm: np.ndarray, angle_deg: n
         ax.yaxis.set_major_locator(FixedLocator([0.5, 1, 2, 3, 5, 7, 10, 15, 20, 30, 50]))
         ax.yaxis.set_minor_locator(NullLocator())
         ax.yaxis.set_major_formatter(FormatStrFormatter("%g"))
-    _dress(ax, "slw (mm)", "tw (mm)")
+    dress(ax, "slw (mm)", "tw (mm)")
     ax.grid(False)
 
 
@@ -144,13 +145,3 @@ def _handles(best: Mapping[str, int], candidates: Sequence[Mapping[str, Any]]) -
         handles.append(Line2D([], [], **{**_mark(name, 8), **({"markersize": 10} if name == "balanced" else {})}))
         labels.append(BEST_MARKS[name][2])
     return handles, labels
-
-
-def _dress(ax: Axes, x_label: str, y_label: str) -> None:
-    ax.set_xlabel(x_label, fontsize=10)
-    ax.set_ylabel(y_label, fontsize=10)
-    ax.tick_params(labelsize=9, color=GREY)
-    ax.grid(True, linewidth=0.5, color="#dddddd")
-    ax.set_axisbelow(True)
-    ax.spines[["top", "right"]].set_visible(False)
-    ax.spines[["left", "bottom"]].set_color(GREY)

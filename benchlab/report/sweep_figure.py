@@ -70,7 +70,7 @@ def plot_angle_over_field(ax: Axes, sweep: Sweep, name: str, published: Sequence
         ax.plot(values, theta, color=colours[others], linewidth=1.4, marker="o" if len(values) <= 40 else "",
                 markersize=3, label=_label(rest, others, sweep, index, len(lines)))  # fmt: skip
     _plot_published(ax, sweep, name, published, colours)
-    _dress(ax, f"{SYMBOLS[name]} (mm)", f"bending angle θ at {sweep.pressure_MPa[-1]:g} MPa (°)")
+    dress(ax, f"{SYMBOLS[name]} (mm)", f"bending angle θ at {sweep.pressure_MPa[-1]:g} MPa (°)")
     _add_legend(ax)
 
 
@@ -81,7 +81,7 @@ def plot_over_pressure(ax: Axes, sweep: Sweep, curve: str, label: str) -> None:
         name = _label(list(sweep.axes), combination, sweep, index, count)
         ax.plot(sweep.pressure_MPa, sweep.curves[curve][index], color=_colour(index, count), linewidth=1.1, label=name,
                 marker="o" if len(sweep.pressure_MPa) < 3 else "")  # fmt: skip
-    _dress(ax, "pressure (MPa)", label)
+    dress(ax, "pressure (MPa)", label)
     if not np.isfinite(sweep.curves[curve]).any():
         ax.text(0.5, 0.5, "not simulated", transform=ax.transAxes, ha="center", color=GREY)
     elif count > 1:
@@ -94,7 +94,7 @@ def plot_volume_over_area(ax: Axes, sweep: Sweep) -> None:
     count = len(volume)
     for index in range(count):
         ax.plot(area[index] / 100, volume[index], "o", color=_colour(index, count), markersize=5)
-    _dress(ax, "TPU area wl·tw·n (cm²)", f"volume at {sweep.pressure_MPa[-1]:g} MPa (mL)")
+    dress(ax, "TPU area wl·tw·n (cm²)", f"volume at {sweep.pressure_MPa[-1]:g} MPa (mL)")
 
 
 def _plot_published(
@@ -158,7 +158,8 @@ def _add_legend(ax: Axes) -> None:
         text.set_parse_math(False)
 
 
-def _dress(ax: Axes, x_label: str, y_label: str) -> None:
+def dress(ax: Axes, x_label: str, y_label: str) -> None:
+    """Labels, a light grid, and axes on the left and below only."""
     ax.set_xlabel(x_label, fontsize=10)
     ax.set_ylabel(y_label, fontsize=10)
     ax.tick_params(labelsize=9, color=GREY)
