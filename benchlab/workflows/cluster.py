@@ -89,7 +89,7 @@ def _next(arrived: queue.SimpleQueue[Any], client: Any, scheduler: str, timeout_
         alone_since = time.monotonic() if alone_since is None else alone_since
         if time.monotonic() - alone_since > timeout_s:
             what = f"the scheduler at {scheduler} is gone, or has had no worker for {timeout_s:g} s"
-            raise BatchError(what, hint="what was done is kept; start it again and repeat the command")
+            raise BatchError(what, hint="start it again and repeat the command; a sweep goes on from what is done")
 
 
 def _has_workers(client: Any) -> bool:
@@ -103,7 +103,7 @@ def _outcome(future: Any, item: Item, scheduler: str) -> Outcome[Item]:
     from distributed.scheduler import KilledWorker
 
     if future.status in ("cancelled", "lost"):
-        hint = "what was done is kept; start it again and repeat the command"
+        hint = "start it again and repeat the command; a sweep goes on from what is done"
         raise BatchError(f"the scheduler at {scheduler} was lost", hint=hint)
     try:
         found: Outcome[Item] = future.result()
