@@ -122,6 +122,7 @@ def simulate(
       benchlab simulate --design shell.yaml --material rubber.yaml --pressure-MPa 0:0.5:0.01 --cap-mm 15 --out results
       benchlab simulate --design tw9_slw10 --tip-force-at-deg 45 --contact-area-mm2 110 --json
     """
+    from benchlab.cli.progress import progress
     from benchlab.io.layup_file import DEFAULT_LAYUP, read_layup
     from benchlab.simulation.actuator_response import Fixture
     from benchlab.workflows.simulate import simulate as run
@@ -129,7 +130,9 @@ def simulate(
 
     given = lever_arm_mm is not None or contact_area_mm2 is not None
     fixture = Fixture(lever_arm_mm, contact_area_mm2) if given else Fixture()
-    found = run(design, Study(read_layup(material or DEFAULT_LAYUP), pressures, fixture, cap_mm), **options)
+    study = Study(read_layup(material or DEFAULT_LAYUP), pressures, fixture, cap_mm)
+    with progress(design.name) as report:
+        found = run(design, study, progress=report, **options)
     _tell(found)
     if as_json:
         click.echo(json.dumps(found, indent=2, allow_nan=False))

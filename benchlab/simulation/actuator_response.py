@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import functools
+import itertools
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -110,11 +112,13 @@ def actuator_response(
     fixture: Fixture | None = None,
     cap_mm: float = 0.0,
     blocked: bool = True,
+    progress: Callable[[int, int], None] | None = None,
     **cell_options: Any,
 ) -> ActuatorResponse:
     """Simulate an actuator at growing pressures (MPa). cap_mm: rigid length at each end. blocked: also held straight.
 
-    cell_options: `refine` and `terms` of Cell.of. Raises UsageError for impossible pressures or caps.
+    progress: called with states found and states wanted. cell_options: `refine` and `terms` of Cell.of.
+    Raises UsageError for impossible pressures or caps.
 
     >>> from benchlab.simulation.laws import Polynomial
     >>> layup = Layup("trial", "guessed", film=Polynomial(C10=1.5, C20=3.0))
@@ -127,8 +131,12 @@ def actuator_response(
         )
     started = time.perf_counter()
     cell = Cell.of(design, layup, **cell_options)
-    free = follow(cell, pressures_MPa)
-    held = follow(cell, [point.pressure_MPa for point in free.points], held_k=0.0) if blocked and free.points else None
+    found = itertools.count(1)
+    wanted = (1 + blocked) * len(pressures_MPa)
+    reached = functools.partial(lambda tell: tell(next(found), wanted), progress) if progress else None
+    free = follow(cell, pressures_MPa, reached=reached)
+    straight = [point.pressure_MPa for point in free.points]
+    held = follow(cell, straight, held_k=0.0, reached=reached) if blocked and straight else None
     k, lam = (np.array([getattr(point.state, name) for point in free.points]) for name in ("k", "lam"))
     moment = np.full(len(k), np.nan)
     if held is not None:

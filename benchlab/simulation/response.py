@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -42,11 +42,16 @@ class Path:
     limit_pressure_MPa: float | None
 
 
-def follow(cell: Cell, pressures_MPa: Sequence[float], held_k: float | None = None) -> Path:
+def follow(
+    cell: Cell,
+    pressures_MPa: Sequence[float],
+    held_k: float | None = None,
+    reached: Callable[[], None] | None = None,
+) -> Path:
     """Stable states of the cell at growing pressures, from the round tube on.
 
     held_k: None, free to bend; or the angle per unstretched length (rad/mm) at which the cell is held.
-    Raises UsageError where the pressures do not grow or are negative.
+    reached: called after each pressure. Raises UsageError where the pressures do not grow or are negative.
     """
     check_pressures(pressures_MPa)
     start = cell.round_tube() if held_k is None else replace(cell.round_tube(), k=held_k)
@@ -57,6 +62,8 @@ def follow(cell: Cell, pressures_MPa: Sequence[float], held_k: float | None = No
         if solved is None:
             return Path(tuple(points), known[-1][0] if known else 0.0)
         points.append(PathPoint(float(pressure), solved.state, moment_Nmm(cell, solved) if held_k is not None else 0.0))
+        if reached:
+            reached()
     return Path(tuple(points), None)
 
 

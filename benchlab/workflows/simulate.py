@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -52,6 +53,7 @@ def simulate(
     name: str | None = None,
     tip_force_at_deg: float | None = None,
     overwrite: bool = False,
+    progress: Callable[[int, int], None] | None = None,
 ) -> dict[str, Any]:
     """Simulate a design at the study's pressures, and write NAME.h5, .csv, .png and .cell.png into `out`, all or none.
 
@@ -67,7 +69,7 @@ def simulate(
     outputs.check(overlay=False, inputs=())
     with outputs.locked(), threadpool_limits(1):
         response = actuator_response(
-            design, study.layup, study.pressures_MPa, study.fixture, study.cap_mm, blocked=study.blocked
+            design, study.layup, study.pressures_MPa, study.fixture, study.cap_mm, study.blocked, progress
         )
         if not len(response.pressure_MPa):
             raise _no_state(design, study, response)
