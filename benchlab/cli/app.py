@@ -32,6 +32,9 @@ def cli(debug: bool) -> None:
 
     See: `benchlab analyze VIDEO` finds the markers on a bending actuator and writes its angle against time.
 
+    Predict: `benchlab simulate --tw-mm 3 --slw-mm 10` simulates a fabric-shelled actuator: angle, volume, blocked force;
+    `sweep` many designs, `design` the one that is wanted, `cut` it.
+
     \b
     Exit codes: 0 ok, 1 a bug in benchlab, 2 usage, 3 input refused, 4 a batch finished with failures,
     130 interrupted (what was measured is kept, marked partial).

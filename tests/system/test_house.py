@@ -55,9 +55,13 @@ def test_every_option_with_a_unit_wears_it() -> None:
                     assert option.endswith(("-mm", "-px")), option
 
 
-def test_readme_names_only_what_exists() -> None:
-    for path in re.findall(r"\]\(((?!http)[^)#]+)\)", README):
-        assert (ROOT / path).exists(), path
+@pytest.mark.parametrize("page", ["README.md", *(f"docs/{path.name}" for path in (ROOT / "docs").glob("*.md"))])
+def test_links_lead_to_something(page: str) -> None:
+    for path in re.findall(r"\]\(((?!http)[^)#]+)\)", (ROOT / page).read_text(encoding="utf-8")):
+        assert ((ROOT / page).parent / path).exists(), path
+
+
+def test_readme_names_only_commands_that_exist() -> None:
     for line in re.findall(r"^\s*(benchlab [a-z-]+(?: [a-z-]+)?)", README, re.MULTILINE):
         known = [path for path, _ in commands(cli)]
         assert any(line.startswith(path) for path in known), line

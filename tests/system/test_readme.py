@@ -1,4 +1,4 @@
-"""The commands of README, run as they stand there, in a folder that looks like a clone."""
+"""The commands of README and of the guides in docs, run as they stand there, in a folder that looks like a clone."""
 
 import re
 import shlex
@@ -15,8 +15,10 @@ from benchlab.workflows import sample_data
 
 ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-SHELL = "\n".join(re.findall(r"```sh\n(.*?)```", README, re.DOTALL))
-COMMANDS = re.findall(r"benchlab [a-z][^&\n]*", SHELL)
+GUIDES = "\n".join((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8") for name in ("see", "predict"))
+SHELL = "\n".join(re.findall(r"```sh\n(.*?)```", README + GUIDES, re.DOTALL))
+COMMANDS = sorted(set(re.findall(r"benchlab [a-z][^&\n]*", SHELL)))
+REFUSE_TO_REPLACE = ("calibrate", "cut", "design", "export", "fit-material")
 
 
 @pytest.fixture(scope="module")
@@ -56,7 +58,7 @@ def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_readme_has_commands() -> None:
-    assert len(COMMANDS) >= 6
+    assert len(re.findall(r"^benchlab [a-z]", README, re.MULTILINE)) >= 6
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -72,16 +74,18 @@ def test_command_of_readme(command: str, clone: Path, benchlab, monkeypatch: pyt
     if "--lens" in command and not (clone / "results" / "lens.json").exists():
         (first,) = [c for c in COMMANDS if c.startswith("benchlab calibrate")]
         assert benchlab(*shlex.split(first)[1:]).code == 0
-    done = benchlab(*shlex.split(command)[1:], *(["--overwrite"] if "calibrate" in command else []))
+    words = shlex.split(command)[1:]
+    done = benchlab(*words, *(["--overwrite"] if words[0] in REFUSE_TO_REPLACE else []))
     assert done.code == 0, done.err
     assert "wrote" in done.err or "current" in done.err
 
 
-def test_the_python_of_readme_runs(clone: Path, benchlab, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_python_of_the_guide_runs(clone: Path, benchlab, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(clone)
     (clone / "results").mkdir(exist_ok=True)
-    benchlab(*shlex.split(COMMANDS[1])[1:])
-    (code,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+    (first,) = [c for c in COMMANDS if c == "benchlab analyze sample_data/videos/tw9_slw10_s1.mp4 --out results"]
+    benchlab(*shlex.split(first)[1:])
+    (code,) = re.findall(r"```python\n(.*?)```", GUIDES, re.DOTALL)
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert 1.0 < float(done.stdout.split()[0]) < 2.0
