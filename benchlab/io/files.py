@@ -57,6 +57,16 @@ def cannot_write(error: OSError, path: Path) -> InputError:
     return InputError(f"could not be written: {reason_of(error)}", file=path, hint=hint)
 
 
+def check_new_file(path: Path, overwrite: bool = False) -> None:
+    """Raises UsageError where a file at `path` would replace another, or has no folder to lie in."""
+    if path.is_dir():
+        raise UsageError("is a folder", file=path, hint="give the name of a file in it")
+    if path.exists() and not overwrite:
+        raise UsageError("exists", file=path, hint="choose another --out, or replace it with --overwrite")
+    if not path.absolute().parent.is_dir():
+        raise UsageError("no such folder", file=path.parent, hint="make it, or choose another --out")
+
+
 @contextmanager
 def written_whole(path: Path) -> Iterator[Path]:
     """A temporary name beside `path` to write to; on success it is flushed to disk and takes the place of `path`.

@@ -126,8 +126,8 @@ def _reach(
 
 
 def _extrapolated(known: list[tuple[float, State]], pressure: float) -> State:
-    """The state at a pressure as a polynomial through the last states, of second order at most, would have it."""
-    last = known[-3:]
+    """The state at a pressure as a polynomial through the last states, of third order at most, would have it."""
+    last = known[-4:]
     weights = [
         math.prod((pressure - q) / (p - q) for j, (q, _) in enumerate(last) if j != i) for i, (p, _) in enumerate(last)
     ]

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from benchlab.errors import InputError, UsageError
-from benchlab.io.files import sha256
+from benchlab.io.files import check_new_file, sha256
 from benchlab.io.lens_file import write_lens
 from benchlab.io.recording import RecordingInfo, open_recording
 from benchlab.vision.lens import calibrate, find_chessboard
@@ -28,10 +28,7 @@ def calibrate_camera(
     Raises UsageError and InputError; then nothing has been written.
     """
     columns_rows = _board(corners)
-    if out.exists() and not overwrite:
-        raise UsageError("exists", file=out, hint="choose another --out, or replace it with --overwrite")
-    if not out.absolute().parent.is_dir():
-        raise UsageError("no such folder", file=out.parent, hint="make it, or choose another --out")
+    check_new_file(out, overwrite)
     sets: list[FloatArray | None] = []
     size = (0, 0)
     for source in sources:

@@ -11,8 +11,8 @@ import benchlab
 from benchlab.actuator import ShellDesign
 from benchlab.cutting.layout import CutSheet, lay_out
 from benchlab.cutting.settings import CutSettings
-from benchlab.errors import UsageError
 from benchlab.io.cut_file import check_cut_path, write_cut
+from benchlab.io.files import check_new_file
 
 
 def cut(
@@ -23,12 +23,7 @@ def cut(
     Raises UsageError and InputError; then nothing has been written.
     """
     check_cut_path(out)
-    if out.is_dir():
-        raise UsageError("is a folder", file=out, hint="give the name of a file in it")
-    if out.exists() and not overwrite:
-        raise UsageError("exists", file=out, hint="choose another --out, or replace it with --overwrite")
-    if not out.absolute().parent.is_dir():
-        raise UsageError("no such folder", file=out.parent, hint="make it, or choose another --out")
+    check_new_file(out, overwrite)
     drawn = lay_out(design, settings, sheet)
     found = _summary(design, settings, drawn)
     about = {"program": f"benchlab {benchlab.__version__}", "unit": "mm", **found}

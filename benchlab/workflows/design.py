@@ -17,7 +17,7 @@ import numpy as np
 from benchlab.actuator import ShellDesign
 from benchlab.errors import BenchlabError, InputError, UsageError
 from benchlab.io.design_file import write_design
-from benchlab.io.files import cannot_write, written_whole
+from benchlab.io.files import cannot_write, check_new_file, written_whole
 from benchlab.simulation import inverse
 from benchlab.workflows.cluster import run_anywhere
 from benchlab.workflows.simulated import Study, simulate_design
@@ -164,8 +164,7 @@ def _paths(out: Path, wish: Wish, overwrite: bool) -> dict[str, Path]:
             raise UsageError("no such folder", file=out, hint="make it, or choose another --out")
         out.mkdir()
     for path in paths.values():
-        if path.exists() and not overwrite:
-            raise UsageError("exists", file=path, hint="choose another --out, or replace it with --overwrite")
+        check_new_file(path, overwrite)
     return paths
 
 

@@ -17,7 +17,7 @@ from benchlab.deck.sheets import sheets_of
 from benchlab.deck.solid import Solid, solid_of
 from benchlab.deck.tube import Extent, Tube, tube_of
 from benchlab.errors import UsageError
-from benchlab.io.files import written_whole
+from benchlab.io.files import check_new_file, written_whole
 from benchlab.io.layup_file import read_layup
 from benchlab.simulation.layup import Layup
 
@@ -56,6 +56,11 @@ class ExportSettings:
             raise UsageError(f"--bulk-over-shear is {self.bulk_over_shear}", hint="give a number far above 1, as 2000")
 
     @property
+    def kind(self) -> str:
+        """Of the elements: those asked for, or those that suit the engine."""
+        return self.elements or ("sheets" if self.engine == "calculix" else "shell")
+
+    @property
     def pressures_MPa(self) -> list[float]:
         return [float(p) for p in self.pressure_MPa * np.arange(1, self.steps + 1) / self.steps]
 
@@ -69,7 +74,7 @@ def deck_of(design: ShellDesign, layup: Layup, settings: ExportSettings) -> tupl
     if settings.engine == "abaqus":
         lines = heading(tube, settings.pressure_MPa, "abaqus", None)
         return cut_in_four(tube), abaqus_deck(tube, settings.pressures_MPa, lines)
-    model = {"shell": lambda tube: tube, "sheets": sheets_of, "solid": solid_of}[settings.elements or "sheets"](tube)
+    model = {"shell": lambda tube: tube, "sheets": sheets_of, "solid": solid_of}[settings.kind](tube)
     lines = heading(model, settings.pressure_MPa, "calculix", settings.bulk_over_shear)
     return model, calculix_deck(model, settings.pressures_MPa, lines, settings.bulk_over_shear)
 
@@ -78,12 +83,7 @@ def export(
     design: ShellDesign, material: str | Path, settings: ExportSettings, out: Path, overwrite: bool = False
 ) -> dict[str, Any]:
     """Write a deck; returns what is in it, as `--json` shows it. Raises UsageError and InputError; then nothing is written."""
-    if out.is_dir():
-        raise UsageError("is a folder", file=out, hint="give the name of a file in it")
-    if out.exists() and not overwrite:
-        raise UsageError("exists", file=out, hint="choose another --out, or replace it with --overwrite")
-    if not out.absolute().parent.is_dir():
-        raise UsageError("no such folder", file=out.parent, hint="make it, or choose another --out")
+    check_new_file(out, overwrite)
     layup = read_layup(material)
     model, text = deck_of(design, layup, settings)
     with written_whole(out) as stage:
@@ -97,7 +97,7 @@ def export(
         "design": {"name": design.name, **asdict(design)},
         "layup": layup.name,
         "engine": settings.engine,
-        "elements": settings.elements or ("shell" if isinstance(model, Tube) else "solid"),
+        "elements": settings.kind,
         "cells": tube.extent.cells,
         "length_mm": tube.length_mm,
         "node_count": len(model.nodes_mm),

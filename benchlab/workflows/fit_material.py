@@ -10,7 +10,7 @@ from typing import Any
 
 import benchlab
 from benchlab.errors import InputError, UsageError, printable
-from benchlab.io.files import cannot_write, sha256, written_whole
+from benchlab.io.files import cannot_write, check_new_file, sha256, written_whole
 from benchlab.io.layup_file import write_layup
 from benchlab.io.tensile import SpecimenSize, read_tensile
 from benchlab.report.figures import save_png
@@ -79,16 +79,11 @@ def fit_material(
 def _check_outputs(paths: Sequence[Path], sources: Sequence[Path], overwrite: bool) -> None:
     if paths[0].suffix.lower() not in (".yaml", ".yml"):
         raise UsageError("is not a .yaml file", file=paths[0], hint="give --out a name that ends in .yaml")
-    if not paths[0].absolute().parent.is_dir():
-        raise UsageError("no such folder", file=paths[0].parent, hint="make it, or choose another --out")
     read = {source.resolve() for source in sources}
     for path in paths:
         if path.resolve() in read:
             raise UsageError("is read here and would be replaced", file=path, hint="choose another --out")
-        if path.is_dir():
-            raise UsageError("is a folder", file=path, hint="choose another --out")
-        if path.exists() and not overwrite:
-            raise UsageError("exists", file=path, hint="choose another --out, or replace it with --overwrite")
+        check_new_file(path, overwrite)
 
 
 def _read(path: Path, settings: FitSettings) -> _Test:
