@@ -72,8 +72,8 @@ def design(
     import json
 
     from benchlab.cli.progress import progress
-    from benchlab.workflows.design import Wish
     from benchlab.workflows.design import design as find
+    from benchlab.workflows.design_wish import Wish
 
     pressure = options["pressure_mpa"]
     if pressure <= 0:
@@ -100,7 +100,7 @@ def _tell(found: dict[str, Any]) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    from benchlab.workflows.design import PREFERENCES
+    from benchlab.workflows.design_outputs import PREFERENCES
 
     table = Table("tw, mm", "slw, mm", "angle, deg", "volume, mL", "force, N", "film strain", "deg/0.1 mm", "windows",
                   "best in", box=None, pad_edge=False)  # fmt: skip

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import functools
 import math
-import tempfile
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,15 +14,11 @@ import numpy as np
 
 from benchlab.actuator import ShellDesign
 from benchlab.errors import BenchlabError, InputError, UsageError
-from benchlab.io.design_file import write_design
-from benchlab.io.files import cannot_write, check_new_file, written_whole
 from benchlab.simulation import inverse
 from benchlab.workflows.cluster import run_anywhere
+from benchlab.workflows.design_outputs import PREFERENCES, design_paths, write_designs
+from benchlab.workflows.design_wish import SLW, TW, AngleMap, Wish
 from benchlab.workflows.simulated import Study, simulate_design
-
-TW, SLW = "window_width_mm", "strip_width_mm"
-LINES, NODES = 11, 8
-"""Lines of fixed tw (or slw) that are searched, and places on each where the first simulations are."""
 
 ROUNDED_MM = 0.01
 TOLERANCE_DEG = 0.5
@@ -33,75 +27,7 @@ TOLERANCE_DEG = 0.5
 CUT_ERROR_MM = 0.1
 _SLOPE_STEP_MM = 0.25  # less, and the steps of the mesh are seen
 
-PREFERENCES = {
-    "least_cut_error": "least change of angle by cutting errors",
-    "least_volume": "least volume",
-    "most_force": "most blocked force",
-    "least_film_strain": "least strained film",
-}
-"""What a design may be the best in."""
-
-Span = tuple[tuple[float, ...], bool]
 Progress = Callable[[int, int | None], None]
-
-
-@dataclass(frozen=True)
-class Wish:
-    """What is looked for. tw_mm, slw_mm: (low, high) and True, or values and False. base: the other dimensions."""
-
-    angle_deg: float
-    force_N: float | None
-    tw_mm: Span
-    slw_mm: Span
-    base: ShellDesign
-
-    def __post_init__(self) -> None:
-        for name, value in (("--angle-deg", self.angle_deg), ("--force-N", self.force_N)):
-            if value is not None and not 0 < value < math.inf:
-                raise UsageError(f"{name} is {value:g}", hint="give a positive number")
-        if not (self.tw_mm[1] or self.slw_mm[1]):
-            raise UsageError("--tw-mm and --slw-mm are both fixed", hint="give one of them as a range, START:END")
-
-    @property
-    def along(self) -> str:
-        """The dimension that is solved for on each line."""
-        return SLW if self.slw_mm[1] else TW
-
-    @property
-    def across(self) -> str:
-        return TW if self.along == SLW else SLW
-
-    def lines(self) -> tuple[float, ...]:
-        """Values of the dimension that is fixed on each line."""
-        values, between = self.tw_mm if self.across == TW else self.slw_mm
-        if not between:
-            return values
-        low, high = values
-        found = inverse.whole_window_widths(low, high, self.base.length_mm, self.base.rib_width_mm, LINES)
-        if not found:
-            hint = "widen the range, or give --tw-mm as a list"
-            raise UsageError(f"no whole number of windows fits with tw between {low:g} and {high:g} mm", hint=hint)
-        return found
-
-    def nodes(self) -> np.ndarray:
-        (low, high), _ = self.slw_mm if self.along == SLW else self.tw_mm
-        for value in (low, high):
-            self.design(self.lines()[0], value)  # raises for what cannot be made
-        return inverse.nodes_between(low, high, NODES)
-
-    def design(self, across: float, along: float) -> ShellDesign:
-        return replace(self.base, **{self.across: across, self.along: along})
-
-
-@dataclass(frozen=True)
-class AngleMap:
-    """True angles at the last pressure: on lines (L,) at nodes (N,), angle_deg (L, N), NaN where there is none; and on each line
-    with what was added near its peak, sorted: places and angles."""
-
-    lines: np.ndarray
-    nodes: np.ndarray
-    angle_deg: np.ndarray
-    refined: tuple[tuple[np.ndarray, np.ndarray], ...]
 
 
 def design(
@@ -120,7 +46,7 @@ def design(
     largest that is; InputError where the disk refuses.
     """
     started = time.monotonic()
-    paths = _paths(out, wish, overwrite)
+    paths = design_paths(out, wish, overwrite)
     run = functools.partial(_run, jobs=jobs, scheduler=scheduler, progress=progress)
     angles = _map(wish, study, run)
     places = [
@@ -138,7 +64,7 @@ def design(
         )
     enough = _check_force(wish, study, candidates)
     best = {name: enough[row] for name, row in _best(candidates, enough).items()}
-    _write(wish, study, angles, candidates, best, paths)
+    write_designs(wish, study, angles, candidates, best, paths)
     return {
         "angle_deg": wish.angle_deg,
         "pressure_MPa": study.pressures_MPa[-1],
@@ -152,20 +78,6 @@ def design(
         "outputs": [str(path) for name, path in paths.items() if name in ("table", "figure") or name in best],
         "seconds": round(time.monotonic() - started, 3),
     }
-
-
-def _paths(out: Path, wish: Wish, overwrite: bool) -> dict[str, Path]:
-    """What will be written, by name. Raises UsageError where something is in the way."""
-    stem = f"design_{wish.angle_deg:g}deg"
-    paths = {"table": out / f"{stem}.csv", "figure": out / f"{stem}.png"}
-    paths |= {name: out / f"{stem}_{name}.yaml" for name in ("balanced", *PREFERENCES)}
-    if not out.absolute().is_dir():
-        if out.exists() or not out.absolute().parent.is_dir():
-            raise UsageError("no such folder", file=out, hint="make it, or choose another --out")
-        out.mkdir()
-    for path in paths.values():
-        check_new_file(path, overwrite)
-    return paths
 
 
 def _run(
@@ -319,50 +231,3 @@ def _unreached(wish: Wish, study: Study, angles: AngleMap) -> UsageError:
         )
     what = f"no line that was tried passes {wish.angle_deg:g} deg at {at}; seen are {where(low)} to {where(high)}"
     return UsageError(what, hint="give more values to the dimension that is a list, or a range for both")
-
-
-def _write(
-    wish: Wish,
-    study: Study,
-    angles: AngleMap,
-    candidates: list[dict[str, Any]],
-    best: dict[str, int],
-    paths: dict[str, Path],
-) -> None:
-    """Everything into a hidden folder first, then into its place."""
-    from benchlab.report.design_figure import draw_design_figure
-    from benchlab.report.figures import save_png
-
-    folder = paths["table"].parent
-    try:
-        with tempfile.TemporaryDirectory(dir=folder, prefix=".design-") as hidden:
-            stage = {name: Path(hidden) / path.name for name, path in paths.items()}
-            _write_table(stage["table"], candidates, best)
-            for name, index in best.items():
-                row = candidates[index]
-                write_design(stage[name], replace(wish.base, **{TW: row["tw_mm"], SLW: row["slw_mm"]}))
-            note = f"simulated, not measured · material {study.layup.name} · blocked force: {study.fixture}"
-            title = f"Designs that bend {wish.angle_deg:g}° at {study.pressures_MPa[-1]:g} MPa"
-            swapped = wish.along == TW
-            figure = draw_design_figure(
-                angles.nodes if swapped else angles.lines,
-                angles.lines if swapped else angles.nodes,
-                angles.angle_deg.T if swapped else angles.angle_deg,
-                wish.angle_deg, candidates, best, title, note,
-            )  # fmt: skip
-            save_png(figure, stage["figure"])
-            for name, path in paths.items():
-                if stage[name].exists():
-                    stage[name].replace(path)
-    except OSError as error:
-        raise cannot_write(error, folder) from error
-
-
-def _write_table(path: Path, candidates: list[dict[str, Any]], best: dict[str, int]) -> None:
-    """A row a design; best_in names what it is the best in."""
-    with written_whole(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow([*candidates[0], "best_in"])
-        for index, row in enumerate(candidates):
-            cells = ["" if v is None else f"{v:.8g}" if isinstance(v, float) else str(v).lower() for v in row.values()]
-            writer.writerow([*cells, " ".join(name for name, chosen in best.items() if chosen == index)])
