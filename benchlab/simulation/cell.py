@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from benchlab.actuator import ShellDesign
 from benchlab.simulation.laws.law import FloatArray
 from benchlab.simulation.layup import Layup, laminate_at, pieces_of
-from benchlab.simulation.mesh import CellMesh, cell_mesh, gradings, grid_lines
+from benchlab.simulation.mesh import CellMesh, cell_mesh, gradings, grid_lines, on_circle
 from benchlab.simulation.shell import DY, DZ, Density, Laminate, T, X, Y, potential_density, volume_density
 
 FIELDS = 6
@@ -70,8 +70,9 @@ class Cell:
         s_breaks = sorted({place for piece in pieces for place in piece.s_mm})
         Z_breaks = sorted({place for piece in pieces for place in piece.Z_mm})
         around, along = gradings(design.perimeter_mm, layup.film_thickness_mm)
-        grid = cell_mesh(grid_lines(s_breaks, around, refine), grid_lines(Z_breaks, along, refine))
         radius = design.perimeter_mm / (2 * np.pi)
+        grid = cell_mesh(grid_lines(s_breaks, around, refine), grid_lines(Z_breaks, along, refine))
+        grid = on_circle(grid, radius)
         shape = 1 / radius if layup.moulded else 0.0
         groups: dict[Laminate, list[int]] = {}
         for element, (s, Z) in enumerate(grid.centre_mm):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -89,3 +89,14 @@ def cell_mesh(s_lines: FloatArray, Z_lines: FloatArray) -> CellMesh:
         shape[:, :, 1:, node] = np.moveaxis(function.grad, 0, -1)
     corners = basis.mesh.p[:, basis.mesh.t]
     return CellMesh(places[order], elements, shape, np.array(basis.dx), corners.mean(axis=1).T)
+
+
+def on_circle(mesh: CellMesh, radius_mm: float) -> CellMesh:
+    """The same mesh with s the arc length of the circle as the elements draw it, a little shorter than the true one, so that the
+    round tube is not strained by being drawn."""
+    phi = mesh.nodes_mm[mesh.elements, 0] / radius_mm
+    circle = radius_mm * np.stack([-np.cos(phi), np.sin(phi)], axis=-1)
+    length = np.linalg.norm(mesh.shape[:, :, 1] @ circle, axis=-1)
+    shape = mesh.shape.copy()
+    shape[:, :, 1] /= length[:, :, None]
+    return replace(mesh, shape=shape, weight_mm2=mesh.weight_mm2 * length)

@@ -18,6 +18,8 @@ TOLERANCE = 1e-5
 
 _NO_RISE = 1e-12
 _SHIFTS = 14
+_ROUNDING_MM = 3e-7
+"""Displacements below this, against the stiffest component, are not told from rounding of the energy."""
 
 
 @dataclass(frozen=True)
@@ -48,6 +50,7 @@ def minimise(
     border = np.array(free)
     if not math.isfinite(here.value):
         return Solved(state, here, 0, converged=False)
+    noise = _ROUNDING_MM**2 * float(here.band[0].max())
     for step in range(most_steps):
         for _ in range(_SHIFTS):
             move = _newton_step(here, border, shift)
@@ -55,12 +58,12 @@ def minimise(
                 fields, (k, lam), gain = move
                 trial = State(state.fields + fields, state.k + k, state.lam + lam)
                 there = potential_at(trial)
-                if there.value <= here.value + _NO_RISE * abs(here.value) - 1e-4 * gain:
+                if there.value <= here.value + _NO_RISE * abs(here.value) + noise - 1e-4 * gain:
                     break
             shift = max(4 * shift, 1e-4)
         else:
             return Solved(state, here, step, converged=False)
-        small = gain <= tolerance**2 * max(abs(here.value), 1e-6) and shift == 0
+        small = gain <= max(tolerance**2 * abs(here.value), noise) and shift == 0
         state, here = trial, there
         if astray(state):
             return Solved(state, here, step + 1, converged=False)
