@@ -125,7 +125,7 @@ def _tell(found: dict[str, Any]) -> None:
         console.width = 140
     console.print(table)
     click.echo(
-        f"{len(found['candidates'])} designs bend {found['angle_deg']:g} deg at {found['pressure_MPa']:g} MPa (material "
+        f"designs found: {len(found['candidates'])}, for {found['angle_deg']:g} deg at {found['pressure_MPa']:g} MPa (material "
         f"{printable(found['material'])}; force with {found['fixture']}); {found['seconds']:.1f} s",
         err=True,
     )

@@ -56,6 +56,7 @@ from benchlab.errors import UsageError, printable
 )
 @click.option("--out", type=click.Path(path_type=Path), help="Deck to write. [default: DESIGN_ENGINE.inp]")
 @click.option("--overwrite", is_flag=True, help="Replace an existing deck.")
+@click.option("--run", "run_it", is_flag=True, help="Also run it in CalculiX (ccx) and print the angle of every cell.")
 @click.option("--json", "as_json", is_flag=True, help="One JSON document on standard output.")
 def export(
     design: ShellDesign,
@@ -65,6 +66,7 @@ def export(
     material: str | None,
     out: Path | None,
     overwrite: bool,
+    run_it: bool,
     as_json: bool,
     **options: Any,
 ) -> None:
@@ -81,6 +83,7 @@ def export(
     import json
 
     from benchlab.io.layup_file import DEFAULT_LAYUP
+    from benchlab.workflows.calculix_run import run_and_read
     from benchlab.workflows.export import ExportSettings
     from benchlab.workflows.export import export as write
 
@@ -96,5 +99,15 @@ def export(
         f"{len(found['pressures_MPa'])} pressures; wrote {printable(found['deck'])}",
         err=True,
     )
+    if run_it:
+        found["run"] = run_and_read(design, material or DEFAULT_LAYUP, settings)
+        _tell_run(found["run"])
     if as_json:
         click.echo(json.dumps(found, indent=2, allow_nan=False))
+
+
+def _tell_run(run: dict[str, Any]) -> None:
+    """A line a pressure: the angle of an actuator of which every cell bends like this one, from the mirror plane to the cap."""
+    click.echo(f"angles of every cell times the cells of the actuator, in {run['seconds']:.0f} s:", err=True)
+    for pressure, angles in zip(run["pressure_MPa"], run["angle_deg"]):
+        click.echo(f"  {pressure:.4g} MPa: {', '.join(f'{angle:.2f}' for angle in angles)} deg", err=True)

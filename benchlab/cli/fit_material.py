@@ -17,8 +17,11 @@ LAWS = ("all", "neo-hooke", "mooney-rivlin", "yeoh", "polynomial-2", "ogden-1", 
 @click.command("fit-material", short_help="Material file from tensile tests.")
 @click.argument("tests", metavar="TENSILE.csv...", nargs=-1, required=True, type=click.Path(path_type=Path))
 @click.option(
-    "--thickness-mm", type=Finite("MM"), help="Of the specimen; also becomes the film's in the material file."
+    "--thickness-mm",
+    type=Finite("MM"),
+    help="Of the specimen; also of the film in the material file, unless --film-thickness-mm says otherwise.",
 )
+@click.option("--film-thickness-mm", type=Finite("MM"), help="Of the film in the shell, written to the material file.")
 @click.option(
     "--width-mm", type=Finite("MM"), help="Of the specimen. With the thickness, forces are used, not stresses."
 )
@@ -65,7 +68,13 @@ def fit_material(
 
     size = SpecimenSize(options["thickness_mm"], options["width_mm"], options["gauge_mm"])
     settings = FitSettings(
-        size, law, options["columns"], stress == "true", options["keep_slack"], options["max_stretch"]
+        size,
+        law,
+        options["columns"],
+        stress == "true",
+        options["keep_slack"],
+        options["max_stretch"],
+        options["film_thickness_mm"],
     )
     found = fit(tests, out, settings, overwrite)
     _tell(found)

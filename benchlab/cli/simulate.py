@@ -145,17 +145,22 @@ def simulate(
 def _tell(found: dict[str, Any]) -> None:
     """The last point, warnings and files on standard error."""
     last = found["points"][-1]
-    force = "unknown" if last["blocked_force_N"] is None else f"{last['blocked_force_N']:.2f} N"
+    force = _or_unknown(last["blocked_force_N"])
     click.echo(
         f"{found['design']['name']}, simulated with material {printable(found['material']['name'])}, at {last['pressure_MPa']:g} MPa: "
-        f"{last['angle_deg']:.2f} deg, {last['volume_mL']:.2f} mL, blocked force {force} ({found['fixture']['words']}); "
+        f"{last['angle_deg']:.2f} deg, {last['volume_mL']:.2f} mL, blocked force {force} ({found['fixture']['words']}; "
+        f"{_or_unknown(last['straight_tip_force_N'])} at the tip); "
         f"{len(found['points'])} pressures in {found['seconds']:.1f} s",
         err=True,
     )
     if found["tip_force_at_deg"] is not None:
-        force = "unknown" if last["tip_force_N"] is None else f"{last['tip_force_N']:.3f} N"
-        click.echo(f"  tip held at {found['tip_force_at_deg']:g} deg: {force}", err=True)
+        force = _or_unknown(last["tip_force_N"])
+        click.echo(f"  tip held at {found['tip_force_at_deg']:g} deg, {last['pressure_MPa']:g} MPa: {force}", err=True)
     for warning in found["warnings"]:
         click.echo(f"  warning: {printable(warning)}", err=True)
     for path in found["outputs"]:
         click.echo(f"  wrote {printable(path)}", err=True)
+
+
+def _or_unknown(force_N: float | None) -> str:
+    return "unknown" if force_N is None else f"{force_N:.2f} N"

@@ -23,6 +23,7 @@ class Layup:
     slw/2 it is whole. film_under_strip: the film closes the tube, or ends where the fabric does. moulded: the shell is
     free of bending stress as a round tube; otherwise as a flat sheet. stacking: every layer has its middle on the
     reference surface, as shell programs idealise it; or fabric and strip lie outside of the film, as they are glued.
+    film_largest_stretch: of the tests that the film's law was fitted to; beyond it the law is a guess.
     """
 
     name: str
@@ -36,11 +37,14 @@ class Layup:
     weld_width_mm: float = 0.0
     moulded: bool = True
     stacking: Literal["middle", "outside"] = "middle"
+    film_largest_stretch: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("film_thickness_mm", "fabric_thickness_mm", "strip_thickness_mm"):
             if not (math.isfinite(value := getattr(self, name)) and value > 0):
                 raise UsageError(f"{name} is {value}", hint="give a positive thickness in mm")
+        if self.film_largest_stretch is not None and not self.film_largest_stretch > 1:
+            raise UsageError(f"film_largest_stretch is {self.film_largest_stretch}", hint="give a stretch above 1")
         if not (math.isfinite(self.weld_width_mm) and self.weld_width_mm >= 0):
             raise UsageError(f"weld_width_mm is {self.weld_width_mm}", hint="give 0 or a width in mm")
 

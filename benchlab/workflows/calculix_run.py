@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -13,8 +15,9 @@ from benchlab.deck.angles import plane_rotation_rad
 from benchlab.deck.grid import FloatArray
 from benchlab.deck.solid import Solid
 from benchlab.deck.tube import Tube
-from benchlab.errors import InputError
+from benchlab.errors import InputError, UsageError
 from benchlab.io.calculix import read_displacements, run_calculix
+from benchlab.io.layup_file import read_layup
 from benchlab.simulation.layup import Layup
 from benchlab.workflows.export import ExportSettings, deck_of
 
@@ -40,6 +43,19 @@ def run_design(
     results = run_calculix(deck, timeout_s)
     seconds = time.monotonic() - started
     return CalculixRun(np.array(settings.pressures_MPa), read_angles_deg(results, model), seconds)
+
+
+def run_and_read(design: ShellDesign, material: str | Path, settings: ExportSettings) -> dict[str, Any]:
+    """A deck run out of sight, as `--json` shows it. Raises UsageError where the engine is not CalculiX or is not here."""
+    if settings.engine != "calculix":
+        raise UsageError(f"a deck for {settings.engine} cannot be run here", hint="leave --run out")
+    with tempfile.TemporaryDirectory() as folder:
+        done = run_design(design, read_layup(material), settings, Path(folder))
+    return {
+        "pressure_MPa": done.pressure_MPa.tolist(),
+        "angle_deg": done.angle_deg.tolist(),
+        "seconds": round(done.seconds, 1),
+    }
 
 
 def read_angles_deg(results: Path, model: Tube | Solid) -> FloatArray:

@@ -20,10 +20,14 @@ from benchlab.simulation.tensile.curve import loading_curve
 from benchlab.simulation.tensile.fit_law import LawFit, Specimen, fit_laws, recommended, thinned
 from benchlab.simulation.tensile.models import SOLVERS
 
+WORST_R_SQUARED, POOR_R_SQUARED = 0.5, 0.95
+"""Below the first a law is not written; below the second it is written with a warning."""
+
 
 @dataclass(frozen=True)
 class FitSettings:
-    """How tests are read and fitted. law: one of SOLVERS, or "all". columns: see `read_tensile`. max_stretch: fit up to here."""
+    """How tests are read and fitted. law: one of SOLVERS, or "all". columns: see `read_tensile`. max_stretch: fit up to here.
+    film_thickness_mm: of the film in the shell; None is the specimen's."""
 
     size: SpecimenSize = field(default_factory=SpecimenSize)
     law: str = "all"
@@ -31,6 +35,7 @@ class FitSettings:
     true_stress: bool = False
     keep_slack: bool = False
     max_stretch: float | None = None
+    film_thickness_mm: float | None = None
 
     def __post_init__(self) -> None:
         if self.max_stretch is not None and not (math.isfinite(self.max_stretch) and self.max_stretch > 1.01):
@@ -63,6 +68,12 @@ def fit_material(
     _refuse_copies(tests)
     fits = fit_laws([test.specimen for test in tests], tuple(SOLVERS) if settings.law == "all" else (settings.law,))
     chosen = recommended(fits) if settings.law == "all" else fits[0]
+    if chosen.r_squared < WORST_R_SQUARED:
+        raise InputError(
+            f"{chosen.name} describes the tests with R² {chosen.r_squared:.2f}: that is no description",
+            file=sources[0],
+            hint="check --columns, sizes and units; leave out tests of another material; or --max-stretch",
+        )
     layup = _layup(out, tests, chosen, settings)
     found = _summary(tests, fits, chosen, out, picture)
     title = f"{chosen.name} fitted to {', '.join(test.path.name for test in tests)}"
@@ -113,10 +124,10 @@ def _layup(out: Path, tests: Sequence[_Test], chosen: LawFit, settings: FitSetti
     files = "; ".join(f"{printable(test.path.name)} (sha256 {test.sha256})" for test in tests)
     origin = (
         f"film: {chosen.name} fitted by benchlab {benchlab.__version__} to uniaxial tension, stretches {low:.4g} to {high:.4g}, "
-        f"RMSE {chosen.rmse_MPa:.3g} MPa, of {files}; fabric, strip and thicknesses not measured: the defaults of a layup"
+        f"RMSE {chosen.rmse_MPa:.3g} MPa, of {files}; fabric and strip not measured: the defaults of a layup"
     )
-    layup = Layup(name=out.stem.lower(), origin=origin, film=chosen.law)
-    thickness = settings.size.thickness_mm
+    layup = Layup(name=out.stem.lower(), origin=origin, film=chosen.law, film_largest_stretch=float(f"{high:.4g}"))
+    thickness = settings.film_thickness_mm or settings.size.thickness_mm
     return layup if thickness is None else replace(layup, film_thickness_mm=thickness)
 
 
@@ -134,6 +145,8 @@ def _summary(
     tests: Sequence[_Test], fits: Sequence[LawFit], chosen: LawFit, out: Path, picture: Path
 ) -> dict[str, Any]:
     warnings = list(chosen.notes)
+    if chosen.r_squared < POOR_R_SQUARED:
+        warnings.insert(0, f"{chosen.name} describes the tests badly: R² {chosen.r_squared:.2f}")
     if not chosen.stable_over_data:
         warnings.insert(
             0, f"{chosen.name} is not stable over the stretches of the test: a simulation that reaches them may fail"

@@ -84,6 +84,8 @@ class Outputs:
                 raise UsageError(
                     "is read by this analysis and would be replaced", file=path, hint="choose another --out"
                 )
+            if path.is_dir():
+                raise UsageError("is a folder, and a result goes there", file=path, hint="choose another --out")
             if (
                 path.exists()
                 and not self.overwrite

@@ -27,6 +27,7 @@ from benchlab.workflows.provenance import made_by
 from benchlab.workflows.simulated import Study, code_digest
 
 LARGEST_TIP_ANGLE_DEG = 350.0
+LONGEST_NAME = 200
 STATEMENT = "simulated with a finite-element cell of the shell, not measured"
 
 
@@ -76,22 +77,30 @@ def simulate(
         layers = [layer_stresses(response.cell, point.state) for point in response.free.points]
         unstable = np.array([unstable_share(found) for found in layers])
         extras = _extras(response, layers, tip_force_at_deg)
-        warnings = _warnings(study, response, unstable)
+        warnings = [*_warnings(study, response, unstable), *_beyond(study, response, extras)]
         about = _about(response, warnings, tip_force_at_deg)
         _save(response, study, extras, about, outputs)
-    points = {**response.columns(), **_tip(response), **extras}
+    points = {**response.columns(), **_tip(response), "straight_tip_force_N": _straight_tip_force_N(response), **extras}
     rows: Any = plain([dict(zip(points, values)) for values in zip(*points.values())])
     return {**about, "points": rows, "outputs": [str(path) for path in outputs.paths()]}
 
 
 def _checked_name(name: str) -> str:
-    if name != Path(name).name or name.startswith(".") or not name.isprintable():
-        raise UsageError(f"{name!r} is no name for files", hint="give --name without folders, and --out for the folder")
+    if name != Path(name).name or name.startswith(".") or not name.isprintable() or len(name.encode()) > LONGEST_NAME:
+        raise UsageError(
+            f"{name[:60]!r} is no name for files",
+            hint=f"give --name without folders, up to {LONGEST_NAME} bytes, and --out for the folder",
+        )
     return name
 
 
 def _no_state(design: ShellDesign, study: Study, response: ActuatorResponse) -> InputError:
     limit = response.limit_pressure_MPa or 0.0
+    if not limit:
+        return InputError(
+            f"{design.name} with material {study.layup.name} has no stable state at any pressure",
+            hint="check dimensions and thicknesses (mm) and coefficients (MPa)",
+        )
     return InputError(
         f"{design.name} with material {study.layup.name} has no stable state at {study.pressures_MPa[0]:g} MPa; the last one "
         f"found is at {limit:.4g} MPa, its limit pressure",
@@ -121,6 +130,13 @@ def _tip_forces(response: ActuatorResponse, angle_rad: float) -> FloatArray:
             for at in held
         ],
         dtype=float,
+    )
+
+
+def _straight_tip_force_N(response: ActuatorResponse) -> FloatArray:
+    """Force of the tip of the actuator held straight, across it: the fixture of a finger that presses with its end."""
+    return tip_force_N(
+        response.moment_Nmm, np.zeros(len(response.moment_Nmm)), response.design.length_mm - response.cap_mm * 2
     )
 
 
@@ -154,6 +170,21 @@ def _warnings(study: Study, response: ActuatorResponse, unstable: FloatArray) ->
             f"the film law of material {study.layup.name} is not stable (Drucker) at {100 * unstable[-1]:.2g} % of the film's points at "
             f"{response.pressure_MPa[-1]:g} MPa, the first at {response.pressure_MPa[at]:g} MPa: results from there on may be "
             "those of the law alone; fit it to larger stretches, biaxial ones too"
+        )
+    return found
+
+
+def _beyond(study: Study, response: ActuatorResponse, extras: dict[str, FloatArray]) -> list[str]:
+    """Warnings of results that no actuator or no test stands for."""
+    found = []
+    if (turned := float(np.abs(response.angle_deg).max())) > 360:
+        found.append(f"an angle of {turned:.0f} deg: the actuator would lie on itself, which is not simulated")
+    tested, strain = study.layup.film_largest_stretch, extras["peak_film_strain"]
+    if tested is not None and 1 + strain.max() > tested:
+        at = response.pressure_MPa[int(np.argmax(1 + strain > tested))]
+        found.append(
+            f"from {at:g} MPa on the film is stretched beyond {tested:g}, the largest stretch that its law was fitted to (to "
+            f"{1 + strain.max():.2f}): test the film further"
         )
     return found
 

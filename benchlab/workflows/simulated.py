@@ -65,7 +65,7 @@ def simulate_design(design: ShellDesign, study: Study) -> dict[str, Any]:
     if not len(found.pressure_MPa):
         raise InputError(
             f"{design.name} has no stable state at {study.pressures_MPa[0]:g} MPa",
-            hint="begin at a lower pressure, or take a stiffer material",
+            hint="begin --pressure-MPa lower, take a stiffer --material, or check dimensions and thicknesses",
         )
     columns = {**found.columns(), "peak_film_strain": strain}
     missing = len(study.pressures_MPa) - len(strain)

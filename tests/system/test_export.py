@@ -2,6 +2,8 @@ from pathlib import Path
 
 import pytest
 
+from benchlab.io.calculix import find_calculix
+
 
 def test_a_deck_of_each_engine_says_what_it_is(benchlab, tmp_path: Path) -> None:
     for engine, elements in (("calculix", "solid"), ("calculix", "shell"), ("calculix", "sheets"), ("abaqus", "shell")):
@@ -13,7 +15,14 @@ def test_a_deck_of_each_engine_says_what_it_is(benchlab, tmp_path: Path) -> None
         assert done.json["elements"] == elements and done.json["rib_z_mm"] == [0, 5]
         assert done.json["pressures_MPa"][-1] == pytest.approx(0.35)
         head = out.read_text(encoding="ascii").split("*NODE")[0]
-        for fact in ("tw3_slw10", "mm, N, MPa", "Origin of the layup", "RIB_002: z = 5 mm", "not measured", "from-FEM-angles"):
+        for fact in (
+            "tw3_slw10",
+            "mm, N, MPa",
+            "Origin of the layup",
+            "RIB_002: z = 5 mm",
+            "not measured",
+            "from-FEM-angles",
+        ):
             assert fact in head, fact
         assert ("never been run in Abaqus" in head) == (engine == "abaqus")
 
@@ -62,3 +71,16 @@ def test_what_makes_no_deck_is_refused(options: list[str], says: str, benchlab, 
     done = benchlab("export", "tw3_slw10", "--engine", "abaqus", *options)
     assert done.code == 2 and says in done.err.replace("\n", " "), done.err
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.skipif(find_calculix() is None, reason="CalculiX (ccx) is not installed")
+def test_a_deck_run_on_the_spot_gives_the_angle_of_simulate(benchlab, tmp_path: Path) -> None:
+    coarse = ("--along-mm", 1, "--steps", 1, "--bulk-over-shear", 200)
+    out = tmp_path / "deck.inp"
+    deck = ("export", "tw3_slw10", "--engine", "calculix", "--cells", 2, "--pressure-MPa", 0.1, "--out", out)
+    run = benchlab(*deck, *coarse, "--run", "--json")
+    assert run.code == 0, run.err
+    simulated = benchlab("simulate", "--design", "tw3_slw10", "--pressure-MPa", "0.1", "--out", tmp_path, "--json")
+    assert run.json["run"]["angle_deg"][0][0] == pytest.approx(simulated.json["points"][0]["angle_deg"], rel=0.05)
+    refused = benchlab("export", "tw3_slw10", "--engine", "abaqus", "--out", tmp_path / "a.inp", "--run")
+    assert refused.code == 2 and "cannot be run here" in refused.err

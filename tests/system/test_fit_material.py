@@ -123,3 +123,32 @@ def test_real_materials(
     (chosen,) = [one for one in done.json["laws"] if one["law"] == law]
     assert chosen["r_squared"] > 0.97 and chosen["stable_over_data"] and 0.5 <= chosen["biaxial_factor"] <= 2
     assert read_layup(tmp_path / "a.yaml").film.shear_modulus_MPa == pytest.approx(chosen["shear_modulus_MPa"])
+
+
+def test_what_no_law_describes_is_not_written(tmp_path: Path, benchlab) -> None:
+    rng = np.random.default_rng(1)
+    rows = "\n".join(f"{1 + 0.01 * i:.2f},{rng.uniform(0.1, 20):.3f}" for i in range(1, 60))
+    (tmp_path / "noise.csv").write_text(f"stretch,stress_MPa\n1,0\n{rows}\n")
+    refused = benchlab(
+        "fit-material", tmp_path / "noise.csv", "--law", "neo-hooke", "--keep-slack", "--out", tmp_path / "a.yaml"
+    )
+    assert refused.code == 3 and "that is no description" in refused.err
+    assert not (tmp_path / "a.yaml").exists()
+
+
+def test_the_film_may_be_thinner_than_the_specimen(tmp_path: Path, benchlab) -> None:
+    done = benchlab(
+        "fit-material",
+        SAMPLE,
+        "--law",
+        "yeoh",
+        "--thickness-mm",
+        2,
+        "--film-thickness-mm",
+        0.25,
+        "--out",
+        tmp_path / "a.yaml",
+    )
+    assert done.code == 0, done.err
+    layup = read_layup(tmp_path / "a.yaml")
+    assert layup.film_thickness_mm == 0.25 and layup.film_largest_stretch > 1.5

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -181,3 +182,28 @@ def test_an_unstable_material_file_is_refused_with_its_place(benchlab, tmp_path)
     done = benchlab("simulate", "--design", "tw3_slw10", "--material", tmp_path / "bad.yaml", "--out", tmp_path)
     assert done.code == 3 and "bad.yaml" in done.err and "shear modulus of -2" in done.err
     assert [p.name for p in tmp_path.iterdir()] == ["bad.yaml"]
+
+
+def test_results_that_nobody_tested_are_warned_of(benchlab, tmp_path) -> None:
+    layup = read_layup("from-FEM-angles")
+    write_layup(tmp_path / "tested.yaml", replace(layup, film_largest_stretch=1.1))
+    found = benchlab("simulate", "--tw-mm", 3, "--slw-mm", 10, "--length-mm", 600, "--pressure-MPa", "0.1,0.35",
+                     "--material", tmp_path / "tested.yaml", "--out", tmp_path, "--json", "--strict")  # fmt: skip
+    assert found.code == 3
+    lying, stretched = found.json["warnings"]
+    assert "lie on itself" in lying and "beyond 1.1" in stretched and "from 0.35 MPa on" in stretched
+
+
+def test_the_tip_of_a_straight_actuator_presses_far_less(benchlab, tmp_path) -> None:
+    (point,) = benchlab(
+        "simulate", "--tw-mm", 3, "--slw-mm", 10, "--pressure-MPa", "0.2", "--out", tmp_path, "--json"
+    ).json["points"]
+    assert point["straight_tip_force_N"] == pytest.approx(point["moment_Nmm"] / 90)
+
+
+def test_names_and_folders_in_the_way(benchlab, tmp_path) -> None:
+    design = ("simulate", "--tw-mm", 3, "--slw-mm", 10, "--pressure-MPa", "0.1", "--out", tmp_path)
+    assert "no name for files" in benchlab(*design, "--name", "x" * 300).err
+    (tmp_path / "tw3_slw10.png").mkdir()
+    refused = benchlab(*design, "--overwrite")
+    assert refused.code == 2 and "is a folder" in refused.err

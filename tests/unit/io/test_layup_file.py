@@ -21,7 +21,7 @@ def different(layup: Layup) -> Layup:
         elif isinstance(value, (int, float)):
             changes[field.name] = value + 0.125 * (index + 1)
         elif value is None:
-            changes[field.name] = 0.25
+            changes[field.name] = 1.25
     return dataclasses.replace(layup, **changes)
 
 

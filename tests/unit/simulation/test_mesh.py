@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from benchlab.simulation.mesh import Grading, cell_mesh, gradings, grid_lines
+from benchlab.simulation.mesh import Grading, cell_mesh, gradings, grid_lines, on_circle
 
 
 @given(
@@ -50,3 +50,12 @@ def test_shape_functions_interpolate_quadratics_and_weights_add_up():
 def test_nodes_are_sorted_around_first():
     nodes = cell_mesh(np.array([0.0, 1.0, 3.0]), np.array([0.0, 0.5])).nodes_mm
     assert (np.lexsort(nodes.T[::-1]) == np.arange(len(nodes))).all()
+
+
+def test_the_drawn_circle_is_not_strained():
+    mesh = on_circle(cell_mesh(np.linspace(0, 6 * np.pi, 6), np.array([0.0, 1.0])), 6.0)
+    phi = mesh.nodes_mm[mesh.elements, 0] / 6.0
+    x, y = -6 * np.cos(phi), 6 * np.sin(phi)
+    along = np.hypot(*(np.einsum("eqn,en->eq", mesh.shape[:, :, 1], place) for place in (x, y)))
+    assert along == pytest.approx(1.0, abs=1e-12)
+    assert mesh.weight_mm2.sum() == pytest.approx(6 * np.pi, rel=1e-3)
