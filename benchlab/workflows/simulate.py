@@ -21,7 +21,7 @@ from benchlab.simulation.actuator_response import ActuatorResponse, actuator_res
 from benchlab.simulation.deformed import extremes, layer_stresses, unstable_share
 from benchlab.simulation.film_strain import peak_film_strain
 from benchlab.simulation.laws.law import FloatArray
-from benchlab.simulation.response import hold
+from benchlab.simulation.response import SMALLEST_STEP_MPa, hold
 from benchlab.workflows.outputs import Outputs
 from benchlab.workflows.provenance import made_by
 from benchlab.workflows.simulated import Study, code_digest
@@ -98,8 +98,9 @@ def _no_state(design: ShellDesign, study: Study, response: ActuatorResponse) -> 
     limit = response.limit_pressure_MPa or 0.0
     if not limit:
         return InputError(
-            f"{design.name} with material {study.layup.name} has no stable state at any pressure",
-            hint="check dimensions and thicknesses (mm) and coefficients (MPa)",
+            f"{design.name} with material {study.layup.name} has no stable state at {study.pressures_MPa[0]:g} MPa, and none was found "
+            f"below: its limit pressure, if it has one, is under {SMALLEST_STEP_MPa:g} MPa",
+            hint="check dimensions and thicknesses (mm) and coefficients (MPa), or take a stiffer material",
         )
     return InputError(
         f"{design.name} with material {study.layup.name} has no stable state at {study.pressures_MPa[0]:g} MPa; the last one "
