@@ -63,10 +63,10 @@ def open_table(path: Path) -> Iterator[Table]:
     """
     if (size := check_regular_file(path).st_size) > MAX_BYTES:
         raise InputError(f"{size / 1e6:.0f} MB, more than the limit of {MAX_BYTES / 1e6:.0f} MB", file=path)
-    encoding = _encoding(path)
+    encoding = encoding_of(path)
     try:
         with path.open(encoding=encoding, newline=None) as file:
-            lines = _Lines(path, file)
+            lines = Lines(path, file)
             first, delimiter = _sniff_delimiter(lines)
             records = _records(path, lines, first, delimiter)
             header_line, header = next(records)
@@ -82,7 +82,7 @@ def open_table(path: Path) -> Iterator[Table]:
         raise InputError(f"could not be read: {error.strerror or error}", file=path) from error
 
 
-class _Lines:
+class Lines:
     """The lines of a file, counted, each checked for its length and for bytes that no text has."""
 
     def __init__(self, path: Path, file: IO[str]) -> None:
@@ -100,7 +100,7 @@ class _Lines:
             yield line
 
 
-def _encoding(path: Path) -> str:
+def encoding_of(path: Path) -> str:
     """Encoding by byte order mark, by the zeros of plain UTF-16, or UTF-8 where all bytes fit it, else Latin-1."""
     with path.open("rb") as file:
         head = file.read(4096)
@@ -135,7 +135,7 @@ def _check_text(path: Path, head: bytes) -> None:
         raise InputError("this is a web page, not a text table", file=path, hint="was a login page saved instead?")
 
 
-def _sniff_delimiter(lines: _Lines) -> tuple[list[tuple[int, str]], str]:
+def _sniff_delimiter(lines: Lines) -> tuple[list[tuple[int, str]], str]:
     """The header line and the one after it, each with its number, and the separator that splits both alike.
 
     Before the header, blank lines, comments with # and a spreadsheet's `sep=` are passed over.
@@ -162,7 +162,7 @@ def _split(line: str, delimiter: str) -> list[str]:
 
 
 def _records(
-    path: Path, lines: _Lines, first: Iterable[tuple[int, str]], delimiter: str
+    path: Path, lines: Lines, first: Iterable[tuple[int, str]], delimiter: str
 ) -> Iterator[tuple[int, list[str]]]:
     """(number of the record's first line, cells) for each record that is not blank."""
     start = 0

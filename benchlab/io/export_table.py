@@ -12,7 +12,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from benchlab.errors import InputError, printable
-from benchlab.io.delimited import MAX_BYTES, MAX_COLUMNS, _encoding, _Lines
+from benchlab.io.delimited import MAX_BYTES, MAX_COLUMNS, Lines, encoding_of
 from benchlab.io.files import check_regular_file
 
 MAX_ROWS = 3_000_000
@@ -48,10 +48,10 @@ def read_export(path: Path) -> ExportTable:
     """The table in a file. Raises UsageError or InputError where there is none, more than one, or a row that does not fit."""
     if (size := check_regular_file(path).st_size) > MAX_BYTES:
         raise InputError(f"{size / 1e6:.0f} MB, more than the limit of {MAX_BYTES / 1e6:.0f} MB", file=path)
-    encoding = _encoding(path)
+    encoding = encoding_of(path)
     try:
         with path.open(encoding=encoding, newline=None) as file:
-            reader = _Lines(path, file)
+            reader = Lines(path, file)
             lines = [(reader.number, line) for line in reader if line.strip()]
     except UnicodeError as error:
         raise InputError(f"not readable as {encoding} text", file=path, hint="save it as UTF-8") from error

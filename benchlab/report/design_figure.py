@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from benchlab.report.figures import DPI, _figure_class
+from benchlab.report.figures import DPI, figure_class
 from benchlab.report.panels import GREY
 from benchlab.report.sweep_figure import dress
 from benchlab.report.wording import drawable
@@ -45,7 +45,7 @@ def draw_design_figure(
 
     candidates: rows with tw_mm, slw_mm, those of TRADE_OFFS and reaches_force. best: names of BEST_MARKS to row numbers.
     """
-    figure = _figure_class()(figsize=(12.5, 7.2), dpi=DPI)
+    figure = figure_class()(figsize=(12.5, 7.2), dpi=DPI)
     left = figure.add_axes((0.055, 0.16, 0.385, 0.70))
     plot_angle_map(left, tw_mm, slw_mm, angle_deg, target_deg)
     plot_candidates(left, candidates, best, "tw_mm")

@@ -86,13 +86,13 @@ def draw_curvature_figure(series: CurvatureSeries, title: str, note: str = "") -
     pressure = (
         series.pressure_MPa if series.pressure_MPa is not None and np.isfinite(series.pressure_MPa).any() else None
     )
-    figure_class = _figure_class()
+    new_figure = figure_class()
     groups = flag_groups(series, len(FLAG_STYLES))
     labels = ["bending angle θ", "± 2 standard deviations", *(label for label, _ in groups)]
     letters = max(map(len, labels)) * _LEGEND_LETTER + 0.5
     columns = max(1, int(((_WIDTH if pressure is None else _WIDTH_OF_TWO) - _LEFT) / letters))
     page = _Page(pressure is not None, len(groups), math.ceil(len(labels) / columns))
-    figure = figure_class(figsize=(page.width, page.height), dpi=DPI)
+    figure = new_figure(figsize=(page.width, page.height), dpi=DPI)
 
     upper = page.axes(figure, 0, page.angle, page.angle + _ANGLE)
     plot_angle_over_time(upper, series)
@@ -119,7 +119,7 @@ def save_png(figure: Figure, path: Path) -> None:
     figure.savefig(path, format="png", dpi=DPI, metadata={"Software": "benchlab"}, pil_kwargs={"compress_level": 2})
 
 
-def _figure_class() -> type[Figure]:
+def figure_class() -> type[Figure]:
     """matplotlib's Figure. A home folder that cannot be written is no news: it costs some tenths of a second."""
     logger = logging.getLogger("matplotlib")
     level = logger.level

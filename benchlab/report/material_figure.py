@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from benchlab.report.figures import DPI, _figure_class
+from benchlab.report.figures import DPI, figure_class
 from benchlab.report.panels import GREY
 from benchlab.report.wording import drawable
 from benchlab.simulation.laws.homogeneous import MODES, nominal_stress_MPa
@@ -31,7 +31,7 @@ def draw_material_figure(
 
     tests: name and points of each; chosen: name of the law that is drawn heavily. Names are shown as plain text.
     """
-    figure = _figure_class()(figsize=(11.0, 6.6), dpi=DPI)
+    figure = figure_class()(figsize=(11.0, 6.6), dpi=DPI)
     upper = figure.add_axes((0.065, 0.40, 0.50, 0.48))
     lower = figure.add_axes((0.065, 0.09, 0.50, 0.23))
     bars = figure.add_axes((0.705, 0.09, 0.28, 0.79))

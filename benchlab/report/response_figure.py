@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from benchlab.report.figures import DPI, _figure_class
+from benchlab.report.figures import DPI, figure_class
 from benchlab.report.panels import BLUE, GREY
 from benchlab.report.response_picture import (
     OBLIQUE,
@@ -38,7 +38,7 @@ _NAMES = {"rib": "fabric rib", "weld": "fabric under the strip", "strip": "strip
 
 def draw_response_figure(response: ActuatorResponse) -> Figure:
     """The whole actuator at the last pressure, and angle, volume and blocked force over pressure."""
-    figure = _figure_class()(figsize=(_WIDTH, _HEIGHT), dpi=DPI)
+    figure = figure_class()(figsize=(_WIDTH, _HEIGHT), dpi=DPI)
     last = response.free.points[-1]
     surface = whole_actuator(response.cell, last.state, response.design, response.cap_mm)
     scale = StretchScale.of(surface)
@@ -57,7 +57,7 @@ def draw_response_figure(response: ActuatorResponse) -> Figure:
 
 def draw_cell_figure(response: ActuatorResponse) -> Figure:
     """One cell at the last pressure, as one looks into it, and its sections mid rib and mid window against the round tube."""
-    figure = _figure_class()(figsize=(_CELL_WIDTH, _CELL_HEIGHT), dpi=DPI)
+    figure = figure_class()(figsize=(_CELL_WIDTH, _CELL_HEIGHT), dpi=DPI)
     last = response.free.points[-1]
     surface = whole_cell(response.cell, last.state, 8)
     scale = StretchScale.of(surface)

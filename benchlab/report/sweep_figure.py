@@ -11,7 +11,7 @@ import numpy as np
 from benchlab.actuator import ShellDesign
 from benchlab.io.published import PublishedAngle
 from benchlab.io.sweep_file import Sweep
-from benchlab.report.figures import DPI, _figure_class
+from benchlab.report.figures import DPI, figure_class
 from benchlab.report.panels import BLUE, GREY
 from benchlab.report.wording import drawable
 
@@ -36,7 +36,7 @@ def draw_sweep_figure(sweep: Sweep, published: Sequence[PublishedAngle], title: 
 
     `published` is drawn where dimensions and pressure are the paper's.
     """
-    figure = _figure_class()(figsize=(11.5, 8.6), dpi=DPI)
+    figure = figure_class()(figsize=(11.5, 8.6), dpi=DPI)
     grid = figure.add_gridspec(2, 2, left=0.07, right=0.985, top=0.885, bottom=0.07, wspace=0.2, hspace=0.27)
     angle, second, volume, area = (figure.add_subplot(grid[i, j]) for i in (0, 1) for j in (0, 1))
     varied = sweep.varied

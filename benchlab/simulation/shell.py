@@ -28,8 +28,6 @@ X, Y, T, DX, DY, DZ = range(6)
 K, LAMBDA = 18, 19
 """Places of the fields among six; of k and λ after the 3·6 values and derivatives of the fields."""
 
-R_S, R_Z, D, D_S, D_Z = (slice(3 * i, 3 * i + 3) for i in range(5))
-
 
 @dataclass(frozen=True)
 class Laminate:
