@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from benchlab.report.figures import DPI, figure_class
-from benchlab.report.panels import GREY
-from benchlab.report.sweep_figure import dress
+from benchlab.report.panels import GREY, dress
 from benchlab.report.wording import drawable
 
 if TYPE_CHECKING:

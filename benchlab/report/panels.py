@@ -42,7 +42,7 @@ def plot_angle_over_time(ax: Axes, series: CurvatureSeries) -> None:
         from matplotlib.ticker import MaxNLocator
 
         ax.xaxis.set_major_locator(MaxNLocator(integer=True))
-    _dress(ax, x, label, "bending angle θ (°)")
+    _dress_along(ax, x, label, "bending angle θ (°)")
     _frame_angles(ax, theta, sd)
 
 
@@ -60,7 +60,7 @@ def plot_angle_over_pressure(ax: Axes, series: CurvatureSeries) -> None:
     points: dict[str, Any] = {"marker": "o", "markersize": 4} if len(x) <= FEW else {}
     ax.plot(x, theta, color=BLUE, linewidth=1.3, **points)
     _mark_lone_frames(ax, x, theta, sd)
-    _dress(ax, pressure, "pressure (MPa)", "bending angle θ (°)")
+    _dress_along(ax, pressure, "pressure (MPa)", "bending angle θ (°)")
     _frame_angles(ax, np.where(known, theta, np.nan), sd)
 
 
@@ -69,7 +69,7 @@ def plot_residual(ax: Axes, series: CurvatureSeries, x: FloatArray, label: str) 
     kept = _kept(series.fit_rms_px)
     points: dict[str, Any] = {"marker": "o", "markersize": 3} if len(x) <= FEW else {}
     ax.plot(x[kept], series.fit_rms_px[kept], color=GREY, linewidth=0.9, **points)
-    _dress(ax, x, label, "residual (px)")
+    _dress_along(ax, x, label, "residual (px)")
     if np.isfinite(series.fit_rms_px).any():
         ax.set_ylim(0, max(1.2 * float(np.nanmax(series.fit_rms_px)), 1e-3))
         ax.locator_params(axis="y", nbins=3)
@@ -139,15 +139,22 @@ def _frame_angles(ax: Axes, theta: FloatArray, sd: FloatArray) -> None:
     ax.set_ylim(low - margin, high + margin)
 
 
-def _dress(ax: Axes, x: FloatArray, x_label: str, y_label: str) -> None:
-    known = x[np.isfinite(x)]
-    if known.size and np.ptp(known) > 0:
-        margin = (0.03 if len(x) <= FEW else 0.01) * np.ptp(known)
-        ax.set_xlim(known.min() - margin, known.max() + margin)
-    ax.set_xlabel(x_label, fontsize=10)
-    ax.set_ylabel(y_label, fontsize=10)
+def dress(ax: Axes, x_label: str | None = None, y_label: str | None = None) -> None:
+    """A light grid, axes on the left and below only, and labels where they are given."""
+    if x_label is not None:
+        ax.set_xlabel(x_label, fontsize=10)
+    if y_label is not None:
+        ax.set_ylabel(y_label, fontsize=10)
     ax.tick_params(labelsize=9, color=GREY)
     ax.grid(True, linewidth=0.5, color="#dddddd")
     ax.set_axisbelow(True)
     ax.spines[["top", "right"]].set_visible(False)
     ax.spines[["left", "bottom"]].set_color(GREY)
+
+
+def _dress_along(ax: Axes, x: FloatArray, x_label: str, y_label: str) -> None:
+    known = x[np.isfinite(x)]
+    if known.size and np.ptp(known) > 0:
+        margin = (0.03 if len(x) <= FEW else 0.01) * np.ptp(known)
+        ax.set_xlim(known.min() - margin, known.max() + margin)
+    dress(ax, x_label, y_label)

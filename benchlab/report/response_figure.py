@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from benchlab.report.figures import DPI, figure_class
-from benchlab.report.panels import BLUE, GREY
+from benchlab.report.panels import BLUE, GREY, dress
 from benchlab.report.response_picture import (
     OBLIQUE,
     PIECES,
@@ -105,7 +105,7 @@ def _plot(ax: Axes, response: ActuatorResponse, values: FloatArray, label: str) 
     ax.set_ylabel(label, fontsize=9.5)
     ax.yaxis.set_label_coords(-0.1, 0.5)
     ax.locator_params(axis="y", nbins=5)
-    _dress(ax)
+    dress(ax)
 
 
 def _plot_sections(ax: Axes, response: ActuatorResponse) -> None:
@@ -124,15 +124,7 @@ def _plot_sections(ax: Axes, response: ActuatorResponse) -> None:
     ax.set_xlabel("across (mm)", fontsize=10)
     ax.set_ylabel("from the strip (mm)", fontsize=10)
     ax.legend(loc="center", fontsize=9, frameon=False)
-    _dress(ax)
-
-
-def _dress(ax: Axes) -> None:
-    ax.tick_params(labelsize=9, color=GREY)
-    ax.grid(True, linewidth=0.5, color="#dddddd")
-    ax.set_axisbelow(True)
-    ax.spines[["top", "right"]].set_visible(False)
-    ax.spines[["left", "bottom"]].set_color(GREY)
+    dress(ax)
 
 
 def _write_words(figure: Figure, response: ActuatorResponse, what: str) -> None:

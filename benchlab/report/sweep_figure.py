@@ -12,7 +12,7 @@ from benchlab.actuator import ShellDesign
 from benchlab.io.published import PublishedAngle
 from benchlab.io.sweep_file import Sweep
 from benchlab.report.figures import DPI, figure_class
-from benchlab.report.panels import BLUE, GREY
+from benchlab.report.panels import BLUE, GREY, dress
 from benchlab.report.wording import drawable
 
 if TYPE_CHECKING:
@@ -156,17 +156,6 @@ def _add_legend(ax: Axes) -> None:
     legend = ax.legend(fontsize=8, framealpha=0.8, edgecolor="none")
     for text in legend.get_texts():
         text.set_parse_math(False)
-
-
-def dress(ax: Axes, x_label: str, y_label: str) -> None:
-    """Labels, a light grid, and axes on the left and below only."""
-    ax.set_xlabel(x_label, fontsize=10)
-    ax.set_ylabel(y_label, fontsize=10)
-    ax.tick_params(labelsize=9, color=GREY)
-    ax.grid(True, linewidth=0.5, color="#dddddd")
-    ax.set_axisbelow(True)
-    ax.spines[["top", "right"]].set_visible(False)
-    ax.spines[["left", "bottom"]].set_color(GREY)
 
 
 def _write_words(figure: Figure, sweep: Sweep, title: str) -> None:

@@ -11,7 +11,7 @@ from scipy.optimize import least_squares
 from benchlab.actuator import ShellDesign
 from benchlab.errors import InputError, UsageError
 from benchlab.simulation.cell import Cell, State
-from benchlab.simulation.laws import Polynomial
+from benchlab.simulation.laws import Law, Polynomial
 from benchlab.simulation.laws.law import FloatArray
 from benchlab.simulation.layup import Layup
 from benchlab.simulation.newton import minimise
@@ -49,7 +49,7 @@ class AngleModel:
         self.layup, self.targets = layup, tuple(targets)
         self._states: dict[int, State] = {}
 
-    def angles_deg(self, film: Polynomial) -> FloatArray:
+    def angles_deg(self, film: Law) -> FloatArray:
         """Simulated angles of all targets; NaN where no stable state is found."""
         layup = replace(self.layup, film=film)
         return np.array([self._angle(number, target, layup) for number, target in enumerate(self.targets)])
@@ -121,5 +121,5 @@ def leave_one_out(targets: Sequence[Target], layup: Layup, names: Sequence[str])
     for out, target in enumerate(targets):
         others = [other for number, other in enumerate(targets) if number != out]
         found = identify_film(others, layup, names)
-        errors[out] = AngleModel(found.layup, [target]).angles_deg(found.layup.film)[0] - target.angle_deg  # type: ignore[arg-type]
+        errors[out] = AngleModel(found.layup, [target]).angles_deg(found.layup.film)[0] - target.angle_deg
     return errors

@@ -108,12 +108,7 @@ def _reach(
         target = min(pressure, reached + step)
         guess = _extrapolated(known, target) if known else start
         most = _LARGEST_GROWTH * cell.volume_mm3(known[-1][1] if known else start)
-        solved = minimise(
-            lambda at, p=target: cell.potential(at, p),  # type: ignore[misc]
-            guess,
-            free,
-            astray=lambda at, most=most: cell.volume_mm3(at) > most,  # type: ignore[misc]
-        )
+        solved = _stable_state(cell, target, guess, free, most)
         if solved.converged:
             known.append((target, solved.state))
             if target == pressure:
@@ -123,6 +118,12 @@ def _reach(
             return None
         else:
             step /= 4
+
+
+def _stable_state(cell: Cell, pressure: float, guess: State, free: tuple[bool, bool], most_volume_mm3: float) -> Solved:
+    return minimise(
+        lambda at: cell.potential(at, pressure), guess, free, astray=lambda at: cell.volume_mm3(at) > most_volume_mm3
+    )
 
 
 def _extrapolated(known: list[tuple[float, State]], pressure: float) -> State:

@@ -184,7 +184,7 @@ def published() -> list[Row]:
         ("tw at slw 10: 3", (1, 3, 9, 15), tw, lambda value: ShellDesign(10, value)),
     ):
         targets = [Target(made(float(value)), 0.35, 0.0) for value in values]
-        angles = AngleModel(found.layup, targets).angles_deg(found.layup.film)  # type: ignore[arg-type]
+        angles = AngleModel(found.layup, targets).angles_deg(found.layup.film)
         best = max(shown, key=lambda value: angles[values.index(value)])
         top = values[int(np.argmax(angles))]
         rows.append(
@@ -200,7 +200,7 @@ def published() -> list[Row]:
 def measured() -> list[Row]:
     fem = identified()[0]
     rows = []
-    none = AngleModel(fem.layup, measured_targets()).angles_deg(fem.layup.film)  # type: ignore[arg-type]
+    none = AngleModel(fem.layup, measured_targets()).angles_deg(fem.layup.film)
     wanted = np.array([target.angle_deg for target in measured_targets()])
     rows.append(
         (
