@@ -10,13 +10,17 @@ The house has floors, and imports only go down (checked by import-linter in the 
     vision      picture -> markers -> tracks -> circle -> curvature
     simulation  design + layup -> shell cell -> angle, volume, moment against pressure
     cutting     design -> outlines for the laser
+    force       force trace -> peak of each cycle -> blocked force against pressure
+    stats       values of samples -> do designs differ, how well do they repeat
     actuator    the fabric-shelled design
     units       what a pressure or a length may be written in
     errors      what can go wrong, and with which exit code
 
-(vision, simulation and cutting are one floor of numeric kernels and do not see each other.)
+(vision, simulation, cutting, force and stats are one floor of numeric kernels and do not see each other.)
 
 See:      video -> frames -> markers -> linked tracks -> circle -> curvature series -> result file -> picture.
+Measure:  export of a testing machine -> columns in N, mm, s -> cycles -> blocked force against pressure -> files, figure.
+Compare:  study file -> angle of each cycle of each sample -> ANOVA, pairs, components -> report.
 Predict:  design + layup -> pieces -> laminates on a mesh -> cell -> path of states -> response curves -> files, pictures.
 """
 

@@ -8,9 +8,9 @@ from typing import Any
 import click
 
 from benchlab.actuator import ShellDesign
+from benchlab.cli.condition_options import condition_options
 from benchlab.cli.options import Finite
 from benchlab.cli.ranges import Span
-from benchlab.cli.study_options import study_options
 from benchlab.errors import UsageError, printable
 
 
@@ -34,14 +34,14 @@ from benchlab.errors import UsageError, printable
     "--length-mm", type=Finite("MM"), default=ShellDesign.length_mm, show_default=True, help="Actuator length al."
 )
 @click.option("--cap-mm", type=Finite("MM"), default=0.0, show_default=True, help="Rigid length at either end.")
-@study_options
+@condition_options
 @click.option("--overwrite", is_flag=True, help="Replace existing files.")
 def design(
     angle_deg: float,
     force_n: float | None,
     tw_mm: Any,
     slw_mm: Any,
-    study: Any,
+    conditions: Any,
     jobs: int,
     scheduler: str | None,
     out: Path,
@@ -83,7 +83,7 @@ def design(
     with progress("simulations", quiet=False) as report:
         found = find(
             wish,
-            study((pressure / 2, pressure), options["cap_mm"], True),
+            conditions((pressure / 2, pressure), options["cap_mm"], True),
             out,
             jobs=jobs,
             scheduler=scheduler,

@@ -126,13 +126,13 @@ def simulate(
     from benchlab.io.layup_file import DEFAULT_LAYUP, read_layup
     from benchlab.simulation.actuator_response import Fixture
     from benchlab.workflows.simulate import simulate as run
-    from benchlab.workflows.simulated import Study
+    from benchlab.workflows.simulated import Conditions
 
     given = lever_arm_mm is not None or contact_area_mm2 is not None
     fixture = Fixture(lever_arm_mm, contact_area_mm2) if given else Fixture()
-    study = Study(read_layup(material or DEFAULT_LAYUP), pressures, fixture, cap_mm)
+    conditions = Conditions(read_layup(material or DEFAULT_LAYUP), pressures, fixture, cap_mm)
     with progress(design.name) as report:
-        found = run(design, study, progress=report, **options)
+        found = run(design, conditions, progress=report, **options)
     _tell(found)
     if as_json:
         click.echo(json.dumps(found, indent=2, allow_nan=False))

@@ -8,9 +8,9 @@ from typing import Any
 import click
 
 from benchlab.actuator import ShellDesign
+from benchlab.cli.condition_options import condition_options
 from benchlab.cli.options import Finite
 from benchlab.cli.ranges import Values
-from benchlab.cli.study_options import study_options
 from benchlab.errors import BatchError, printable
 
 
@@ -31,10 +31,10 @@ from benchlab.errors import BatchError, printable
 @click.option(
     "--blocked/--no-blocked", default=True, help="Hold each design straight too, for its blocked force. [default: on]"
 )
-@study_options
+@condition_options
 @click.option("--overwrite", is_flag=True, help="Simulate all again, and replace files that are not benchlab's.")
 def sweep(
-    study: Any, jobs: int, scheduler: str | None, out: Path, overwrite: bool, as_json: bool, **options: Any
+    conditions: Any, jobs: int, scheduler: str | None, out: Path, overwrite: bool, as_json: bool, **options: Any
 ) -> int:
     """Simulate every combination of the dimensions given: START:END[:STEP] (step 1), a list as 1,5,10, or one value.
 
@@ -67,7 +67,7 @@ def sweep(
         try:
             found = run(
                 axes,
-                study(options["pressure_mpa"], options["cap_mm"], options["blocked"]),
+                conditions(options["pressure_mpa"], options["cap_mm"], options["blocked"]),
                 out,
                 jobs=jobs,
                 scheduler=scheduler,

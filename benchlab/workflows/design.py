@@ -18,7 +18,7 @@ from benchlab.simulation import inverse
 from benchlab.workflows.cluster import run_anywhere
 from benchlab.workflows.design_outputs import PREFERENCES, design_paths, write_designs
 from benchlab.workflows.design_wish import SLW, TW, AngleMap, Wish
-from benchlab.workflows.simulated import Study, simulate_design
+from benchlab.workflows.simulated import Conditions, simulate_design
 
 ROUNDED_MM = 0.01
 TOLERANCE_DEG = 0.5
@@ -32,7 +32,7 @@ Progress = Callable[[int, int | None], None]
 
 def design(
     wish: Wish,
-    study: Study,
+    conditions: Conditions,
     out: Path,
     *,
     jobs: int = 1,
@@ -40,7 +40,7 @@ def design(
     overwrite: bool = False,
     progress: Progress | None = None,
 ) -> dict[str, Any]:
-    """Find designs that bend to an angle at the last pressure of `study`, and write a table, a figure and the best of them.
+    """Find designs that bend to an angle at the last pressure of `conditions`, and write a table, a figure and the best of them.
 
     Returns what was found, as `--json` shows it. Raises UsageError where the angle (or the force) is not reached, with the
     largest that is; InputError where the disk refuses.
@@ -48,29 +48,29 @@ def design(
     started = time.monotonic()
     paths = design_paths(out, wish, overwrite)
     run = functools.partial(_run, jobs=jobs, scheduler=scheduler, progress=progress)
-    angles = _map(wish, study, run)
+    angles = _map(wish, conditions, run)
     places = [
         (float(line), bracket)
         for line, (x, y) in zip(angles.lines, angles.refined)
         for bracket in inverse.brackets(x, y, wish.angle_deg)
     ]
     if not places:
-        raise _unreached(wish, study, angles)
-    found = [c for c in run(places, functools.partial(_candidate, wish=wish, study=study)) if c]
+        raise _unreached(wish, conditions, angles)
+    found = [c for c in run(places, functools.partial(_candidate, wish=wish, conditions=conditions)) if c]
     candidates = sorted(found, key=lambda c: (c["tw_mm"], c["slw_mm"]))
     if not candidates:
         raise UsageError(
             "no design found holds its angle when simulated again", hint="take another --material or range"
         )
-    enough = _check_force(wish, study, candidates)
+    enough = _check_force(wish, conditions, candidates)
     best = {name: enough[row] for name, row in _best(candidates, enough).items()}
-    write_designs(wish, study, angles, candidates, best, paths)
+    write_designs(wish, conditions, angles, candidates, best, paths)
     return {
         "angle_deg": wish.angle_deg,
-        "pressure_MPa": study.pressures_MPa[-1],
+        "pressure_MPa": conditions.pressures_MPa[-1],
         "force_N": wish.force_N,
-        "fixture": str(study.fixture),
-        "material": study.layup.name,
+        "fixture": str(conditions.fixture),
+        "material": conditions.layup.name,
         "base": asdict(wish.base),
         "largest_angle": _extreme(wish, angles, np.nanargmax),
         "candidates": candidates,
@@ -101,15 +101,15 @@ def _run(
     return [results[item] for item in items]
 
 
-def _angle(point: ShellDesign, study: Study) -> dict[str, Any]:
+def _angle(point: ShellDesign, conditions: Conditions) -> dict[str, Any]:
     """`angle_deg` at the last pressure, NaN where it bursts before."""
-    found = simulate_design(point, replace(study, blocked=False))
+    found = simulate_design(point, replace(conditions, blocked=False))
     return {"angle_deg": float(found["columns"]["angle_deg"][-1])}
 
 
-def _map(wish: Wish, study: Study, run: Callable[..., list[dict[str, Any] | None]]) -> AngleMap:
+def _map(wish: Wish, conditions: Conditions, run: Callable[..., list[dict[str, Any] | None]]) -> AngleMap:
     lines, nodes = np.array(wish.lines()), wish.nodes()
-    work = functools.partial(_angle, study=study)
+    work = functools.partial(_angle, conditions=conditions)
 
     def angles_of(points: list[tuple[float, float]]) -> np.ndarray:
         found = run([wish.design(float(a), float(b)) for a, b in points], work) if points else []
@@ -129,19 +129,19 @@ def _map(wish: Wish, study: Study, run: Callable[..., list[dict[str, Any] | None
     return AngleMap(lines, nodes, grid, tuple(refined))
 
 
-def _candidate(place: tuple[float, inverse.Bracket], wish: Wish, study: Study) -> dict[str, Any]:
+def _candidate(place: tuple[float, inverse.Bracket], wish: Wish, conditions: Conditions) -> dict[str, Any]:
     """The design in a bracket, by simulation; rounded, and simulated again with its neighbours and held straight."""
     line, bracket = place
 
     def at(point: ShellDesign) -> float:
-        return _angle(point, study)["angle_deg"]
+        return _angle(point, conditions)["angle_deg"]
 
     solved = inverse.solve_bracket(
         lambda x: at(wish.design(line, x)), bracket, wish.angle_deg, tolerance=ROUNDED_MM / 2
     )
     point = wish.design(line, round(solved / ROUNDED_MM) * ROUNDED_MM)
     point = replace(point, **{wish.along: round(getattr(point, wish.along), 6)})
-    columns = simulate_design(point, study)["columns"]
+    columns = simulate_design(point, conditions)["columns"]
     angle = float(columns["angle_deg"][-1])
     if not abs(angle - wish.angle_deg) <= TOLERANCE_DEG:
         raise InputError(f"{point.name} bends {angle:.2f} deg when rounded, {wish.angle_deg:g} are wanted")
@@ -175,7 +175,7 @@ def _plain(row: dict[str, Any]) -> dict[str, Any]:
     return {k: v if isinstance(v, int) else float(v) if math.isfinite(v) else None for k, v in row.items()}
 
 
-def _check_force(wish: Wish, study: Study, candidates: list[dict[str, Any]]) -> list[int]:
+def _check_force(wish: Wish, conditions: Conditions, candidates: list[dict[str, Any]]) -> list[int]:
     """Indices of the candidates that reach the force. Raises UsageError where none does."""
     for row in candidates:
         row["reaches_force"] = wish.force_N is None or (row["blocked_force_N"] or 0.0) >= wish.force_N
@@ -183,8 +183,8 @@ def _check_force(wish: Wish, study: Study, candidates: list[dict[str, Any]]) -> 
     if not enough:
         most = max(candidates, key=lambda row: row["blocked_force_N"] or 0.0)
         raise UsageError(
-            f"designs that bend {wish.angle_deg:g} deg at {study.pressures_MPa[-1]:g} MPa push with up to "
-            f"{most['blocked_force_N'] or math.nan:.1f} N (tw {most['tw_mm']:g}, slw {most['slw_mm']:g} mm, {study.fixture}), not "
+            f"designs that bend {wish.angle_deg:g} deg at {conditions.pressures_MPa[-1]:g} MPa push with up to "
+            f"{most['blocked_force_N'] or math.nan:.1f} N (tw {most['tw_mm']:g}, slw {most['slw_mm']:g} mm, {conditions.fixture}), not "
             f"{wish.force_N:g} N",
             hint="raise --pressure-MPa or --perimeter-mm, or state the fixture of your bench",
         )
@@ -207,21 +207,21 @@ def _extreme(wish: Wish, angles: AngleMap, which: Callable[[np.ndarray], Any]) -
     return {"tw_mm": point.window_width_mm, "slw_mm": point.strip_width_mm, "angle_deg": float(angle)}
 
 
-def _unreached(wish: Wish, study: Study, angles: AngleMap) -> UsageError:
+def _unreached(wish: Wish, conditions: Conditions, angles: AngleMap) -> UsageError:
     if not np.isfinite(angles.angle_deg).any():
         return UsageError(
-            f"every design in the range bursts before {study.pressures_MPa[-1]:g} MPa",
+            f"every design in the range bursts before {conditions.pressures_MPa[-1]:g} MPa",
             hint="take a lower --pressure-MPa",
         )
     low, high = _extreme(wish, angles, np.nanargmin), _extreme(wish, angles, np.nanargmax)
-    at = f"{study.pressures_MPa[-1]:g} MPa"
+    at = f"{conditions.pressures_MPa[-1]:g} MPa"
 
     def where(end: dict[str, float]) -> str:
         return f"{end['angle_deg']:.1f} deg at tw {end['tw_mm']:.2f}, slw {end['slw_mm']:.2f} mm"
 
     if wish.angle_deg > high["angle_deg"]:
-        active = wish.base.length_mm - 2 * study.cap_mm
-        longer = math.ceil(active * wish.angle_deg / high["angle_deg"] + 2 * study.cap_mm)
+        active = wish.base.length_mm - 2 * conditions.cap_mm
+        longer = math.ceil(active * wish.angle_deg / high["angle_deg"] + 2 * conditions.cap_mm)
         hint = f"raise --pressure-MPa, or widen the ranges, or make it longer (the angle grows with the length: --length-mm {longer})"
         return UsageError(f"no design bends {wish.angle_deg:g} deg at {at}; the largest is {where(high)}", hint=hint)
     if wish.angle_deg < low["angle_deg"]:

@@ -12,7 +12,7 @@ from benchlab.errors import UsageError
 from benchlab.io.design_file import write_design
 from benchlab.io.files import cannot_write, check_new_file, written_whole
 from benchlab.workflows.design_wish import SLW, TW, AngleMap, Wish
-from benchlab.workflows.simulated import Study
+from benchlab.workflows.simulated import Conditions
 
 PREFERENCES = {
     "least_cut_error": "least change of angle by cutting errors",
@@ -39,7 +39,7 @@ def design_paths(out: Path, wish: Wish, overwrite: bool) -> dict[str, Path]:
 
 def write_designs(
     wish: Wish,
-    study: Study,
+    conditions: Conditions,
     angles: AngleMap,
     candidates: list[dict[str, Any]],
     best: dict[str, int],
@@ -57,8 +57,8 @@ def write_designs(
             for name, index in best.items():
                 row = candidates[index]
                 write_design(stage[name], replace(wish.base, **{TW: row["tw_mm"], SLW: row["slw_mm"]}))
-            note = f"simulated, not measured · material {study.layup.name} · blocked force: {study.fixture}"
-            title = f"Designs that bend {wish.angle_deg:g}° at {study.pressures_MPa[-1]:g} MPa"
+            note = f"simulated, not measured · material {conditions.layup.name} · blocked force: {conditions.fixture}"
+            title = f"Designs that bend {wish.angle_deg:g}° at {conditions.pressures_MPa[-1]:g} MPa"
             swapped = wish.along == TW
             figure = draw_design_figure(
                 angles.nodes if swapped else angles.lines,

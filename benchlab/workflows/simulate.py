@@ -24,7 +24,7 @@ from benchlab.simulation.laws.law import FloatArray
 from benchlab.simulation.response import SMALLEST_STEP_MPa, hold
 from benchlab.workflows.outputs import Outputs
 from benchlab.workflows.provenance import made_by
-from benchlab.workflows.simulated import Study, code_digest
+from benchlab.workflows.simulated import Conditions, code_digest
 
 LARGEST_TIP_ANGLE_DEG = 350.0
 LONGEST_NAME = 200
@@ -49,14 +49,14 @@ class SimulateOutputs(Outputs):
 
 def simulate(
     design: ShellDesign,
-    study: Study,
+    conditions: Conditions,
     out: Path,
     name: str | None = None,
     tip_force_at_deg: float | None = None,
     overwrite: bool = False,
     progress: Callable[[int, int], None] | None = None,
 ) -> dict[str, Any]:
-    """Simulate a design at the study's pressures, and write NAME.h5, .csv, .png and .cell.png into `out`, all or none.
+    """Simulate a design at the pressures of `conditions`, and write NAME.h5, .csv, .png and .cell.png into `out`, all or none.
 
     name: of the files, the design's where None. tip_force_at_deg: also the force of the tip when held at this angle. Returns
     what was found, as `--json` shows it. Pressures beyond a limit have no result; a warning names it.
@@ -70,16 +70,22 @@ def simulate(
     outputs.check(overlay=False, inputs=())
     with outputs.locked(), threadpool_limits(1):
         response = actuator_response(
-            design, study.layup, study.pressures_MPa, study.fixture, study.cap_mm, study.blocked, progress
+            design,
+            conditions.layup,
+            conditions.pressures_MPa,
+            conditions.fixture,
+            conditions.cap_mm,
+            conditions.blocked,
+            progress,
         )
         if not len(response.pressure_MPa):
-            raise _no_state(design, study, response)
+            raise _no_state(design, conditions, response)
         layers = [layer_stresses(response.cell, point.state) for point in response.free.points]
         unstable = np.array([unstable_share(found) for found in layers])
         extras = _extras(response, layers, tip_force_at_deg)
-        warnings = [*_warnings(study, response, unstable), *_beyond(study, response, extras)]
+        warnings = [*_warnings(conditions, response, unstable), *_beyond(conditions, response, extras)]
         about = _about(response, warnings, tip_force_at_deg)
-        _save(response, study, extras, about, outputs)
+        _save(response, conditions, extras, about, outputs)
     points = {**response.columns(), **_tip(response), "straight_tip_force_N": _straight_tip_force_N(response), **extras}
     rows: Any = plain([dict(zip(points, values)) for values in zip(*points.values())])
     return {**about, "points": rows, "outputs": [str(path) for path in outputs.paths()]}
@@ -94,16 +100,16 @@ def _checked_name(name: str) -> str:
     return name
 
 
-def _no_state(design: ShellDesign, study: Study, response: ActuatorResponse) -> InputError:
+def _no_state(design: ShellDesign, conditions: Conditions, response: ActuatorResponse) -> InputError:
     limit = response.limit_pressure_MPa or 0.0
     if not limit:
         return InputError(
-            f"{design.name} with material {study.layup.name} has no stable state at {study.pressures_MPa[0]:g} MPa, and none was found "
-            f"below: its limit pressure, if it has one, is under {SMALLEST_STEP_MPa:g} MPa",
+            f"{design.name} with material {conditions.layup.name} has no stable state at {conditions.pressures_MPa[0]:g} MPa, "
+            f"and none was found below: its limit pressure, if it has one, is under {SMALLEST_STEP_MPa:g} MPa",
             hint="check dimensions and thicknesses (mm) and coefficients (MPa), or take a stiffer material",
         )
     return InputError(
-        f"{design.name} with material {study.layup.name} has no stable state at {study.pressures_MPa[0]:g} MPa; the last one "
+        f"{design.name} with material {conditions.layup.name} has no stable state at {conditions.pressures_MPa[0]:g} MPa; the last one "
         f"found is at {limit:.4g} MPa, its limit pressure",
         hint=f"ask for pressures up to {limit:.4g} MPa, or take a stiffer material",
     )
@@ -151,16 +157,16 @@ def _tip(response: ActuatorResponse) -> dict[str, FloatArray]:
     }
 
 
-def _warnings(study: Study, response: ActuatorResponse, unstable: FloatArray) -> list[str]:
+def _warnings(conditions: Conditions, response: ActuatorResponse, unstable: FloatArray) -> list[str]:
     found = []
-    reached, asked = len(response.pressure_MPa), len(study.pressures_MPa)
+    reached, asked = len(response.pressure_MPa), len(conditions.pressures_MPa)
     if response.limit_pressure_MPa is not None:
         found.append(
             f"limit pressure: no stable state was found beyond {response.limit_pressure_MPa:.4g} MPa, where the film bursts or the "
             f"shell snaps to another shape; {reached} of {asked} pressures have a result"
         )
     straight = np.isfinite(response.moment_Nmm)
-    if study.blocked and not straight.all():
+    if conditions.blocked and not straight.all():
         first = response.pressure_MPa[int(np.argmin(straight))]
         found.append(
             f"held straight, no stable state was found from {first:g} MPa on: no moment and no blocked force there"
@@ -168,19 +174,19 @@ def _warnings(study: Study, response: ActuatorResponse, unstable: FloatArray) ->
     if (unstable > 0).any():
         at = int(np.argmax(unstable > 0))
         found.append(
-            f"the film law of material {study.layup.name} is not stable (Drucker) at {100 * unstable[-1]:.2g} % of the film's points at "
-            f"{response.pressure_MPa[-1]:g} MPa, the first at {response.pressure_MPa[at]:g} MPa: results from there on may be "
+            f"the film law of material {conditions.layup.name} is not stable (Drucker) at {100 * unstable[-1]:.2g} % of the film's "
+            f"points at {response.pressure_MPa[-1]:g} MPa, the first at {response.pressure_MPa[at]:g} MPa: results from there on may be "
             "those of the law alone; fit it to larger stretches, biaxial ones too"
         )
     return found
 
 
-def _beyond(study: Study, response: ActuatorResponse, extras: dict[str, FloatArray]) -> list[str]:
+def _beyond(conditions: Conditions, response: ActuatorResponse, extras: dict[str, FloatArray]) -> list[str]:
     """Warnings of results that no actuator or no test stands for."""
     found = []
     if (turned := float(np.abs(response.angle_deg).max())) > 360:
         found.append(f"an angle of {turned:.0f} deg: the actuator would lie on itself, which is not simulated")
-    tested, strain = study.layup.film_largest_stretch, extras["peak_film_strain"]
+    tested, strain = conditions.layup.film_largest_stretch, extras["peak_film_strain"]
     if tested is not None and 1 + strain.max() > tested:
         at = response.pressure_MPa[int(np.argmax(1 + strain > tested))]
         found.append(
@@ -209,7 +215,7 @@ def _about(response: ActuatorResponse, warnings: list[str], tip_force_at_deg: fl
 
 def _save(
     response: ActuatorResponse,
-    study: Study,
+    conditions: Conditions,
     extras: dict[str, FloatArray],
     about: dict[str, Any],
     outputs: SimulateOutputs,
@@ -229,8 +235,8 @@ def _save(
             response,
             extras=extras,
             design=about["design"],
-            material=layup_document(study.layup),
-            simulation={**simulation, "study": study.as_json()},
+            material=layup_document(conditions.layup),
+            simulation={**simulation, "conditions": conditions.as_json()},
             provenance={
                 **made_by("numpy", "scipy", "skfem", "h5py"),
                 "code_sha256": code_digest(),

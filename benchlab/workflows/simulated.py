@@ -24,7 +24,7 @@ from benchlab.simulation.response import check_pressures
 
 
 @dataclass(frozen=True)
-class Study:
+class Conditions:
     """What is the same for all designs. blocked: they are also held straight. Raises UsageError for impossible pressures."""
 
     layup: Layup
@@ -46,12 +46,12 @@ class Study:
         }
 
     def key(self, design: ShellDesign) -> str:
-        """One number for all that the result follows from: design, study, and the code that computes it."""
+        """One number for all that the result follows from: design, conditions, and the code that computes it."""
         whole = json.dumps([asdict(design), self.as_json(), code_digest()], sort_keys=True)
         return hashlib.sha256(whole.encode()).hexdigest()
 
 
-def simulate_design(design: ShellDesign, study: Study) -> dict[str, Any]:
+def simulate_design(design: ShellDesign, conditions: Conditions) -> dict[str, Any]:
     """Response of a design, in this process or in a worker, on one thread.
 
     `columns`: (P,) arrays under the names of files, NaN where there is no stable state; `limit_pressure_MPa`; `seconds`.
@@ -59,16 +59,21 @@ def simulate_design(design: ShellDesign, study: Study) -> dict[str, Any]:
     """
     with threadpool_limits(1):
         found = actuator_response(
-            design, study.layup, study.pressures_MPa, study.fixture, study.cap_mm, blocked=study.blocked
+            design,
+            conditions.layup,
+            conditions.pressures_MPa,
+            conditions.fixture,
+            conditions.cap_mm,
+            blocked=conditions.blocked,
         )
         strain = np.array([peak_film_strain(found.cell, point.state) for point in found.free.points])
     if not len(found.pressure_MPa):
         raise InputError(
-            f"{design.name} has no stable state at {study.pressures_MPa[0]:g} MPa",
+            f"{design.name} has no stable state at {conditions.pressures_MPa[0]:g} MPa",
             hint="begin --pressure-MPa lower, take a stiffer --material, or check dimensions and thicknesses",
         )
     columns = {**found.columns(), "peak_film_strain": strain}
-    missing = len(study.pressures_MPa) - len(strain)
+    missing = len(conditions.pressures_MPa) - len(strain)
     return {
         "columns": {name: np.append(values, np.full(missing, np.nan)) for name, values in columns.items()},
         "limit_pressure_MPa": found.limit_pressure_MPa,

@@ -20,7 +20,7 @@ from benchlab.io.sweep_file import CURVES, Sweep, read_earlier_sweep, write_swee
 from benchlab.workflows.cluster import run_anywhere
 from benchlab.workflows.outputs import Outputs
 from benchlab.workflows.provenance import made_by
-from benchlab.workflows.simulated import Study, simulate_design
+from benchlab.workflows.simulated import Conditions, simulate_design
 
 AXES = {
     "tw_mm": "window_width_mm",
@@ -60,7 +60,7 @@ class _Progressing:
 
 def sweep(
     axes: Mapping[str, tuple[float, ...]],
-    study: Study,
+    conditions: Conditions,
     out: Path,
     *,
     jobs: int = 1,
@@ -70,7 +70,7 @@ def sweep(
 ) -> dict[str, Any]:
     """Simulate all combinations of `axes` (names of AXES -> values in mm) and write STEM.h5, .csv and .png into `out`.
 
-    Designs that an earlier, even interrupted, run wrote there with the same study and code are not simulated again. A design
+    Designs that an earlier, even interrupted, run wrote there with the same conditions and code are not simulated again. A design
     that cannot be made or simulated is a row with its reason. Returns what was found, as `--json` shows it.
 
     Raises UsageError and InputError, also where no design at all can be simulated; BatchError where a cluster is lost, and
@@ -81,24 +81,24 @@ def sweep(
     outputs = SweepOutputs(out, _stem(axes), overwrite)
     outputs.check(overlay=False, inputs=())
     with outputs.locked():
-        done = _Progressing([study.key(d) if isinstance(d, ShellDesign) else "" for d in designs])
+        done = _Progressing([conditions.key(d) if isinstance(d, ShellDesign) else "" for d in designs])
         _take_over(outputs.run_file, done, overwrite)
         reused = len(done.results)
         partial = True
         try:
             _simulate(
                 designs,
-                study,
+                conditions,
                 done,
                 jobs,
                 scheduler,
                 progress,
-                lambda: _save(axes, designs, study, done, outputs, True),
+                lambda: _save(axes, designs, conditions, done, outputs, True),
             )
             partial = False
         finally:
             if done.results:
-                found = _save(axes, designs, study, done, outputs, partial)
+                found = _save(axes, designs, conditions, done, outputs, partial)
     if not done.results:
         raise next(error for error in map(_failure, designs, map(done.errors.get, done.keys)) if error)
     failed = [_failure(design, done.errors.get(key)) for design, key in zip(designs, done.keys)]
@@ -152,7 +152,7 @@ def _take_over(path: Path, done: _Progressing, overwrite: bool) -> None:
 
 def _simulate(
     designs: Sequence[ShellDesign | BenchlabError],
-    study: Study,
+    conditions: Conditions,
     done: _Progressing,
     jobs: int,
     scheduler: str | None,
@@ -164,7 +164,7 @@ def _simulate(
     if not left:
         return
     saved = time.monotonic()
-    for outcome in run_anywhere(left, functools.partial(simulate_design, study=study), jobs, scheduler):
+    for outcome in run_anywhere(left, functools.partial(simulate_design, conditions=conditions), jobs, scheduler):
         if outcome.result is not None:
             done.results[keys[outcome.item]] = outcome.result
         elif outcome.error is not None:
@@ -181,7 +181,7 @@ def _simulate(
 def _save(
     axes: Mapping[str, tuple[float, ...]],
     designs: Sequence[ShellDesign | BenchlabError],
-    study: Study,
+    conditions: Conditions,
     done: _Progressing,
     outputs: SweepOutputs,
     partial: bool,
@@ -190,7 +190,7 @@ def _save(
     from benchlab.report.figures import save_png
     from benchlab.report.sweep_figure import draw_sweep_figure
 
-    found = _assembled(axes, designs, study, done, partial)
+    found = _assembled(axes, designs, conditions, done, partial)
     with outputs.staged() as stage:
         write_sweep_csv(stage.table, found)
         title = f"Simulated sweep over {', '.join(name.removesuffix('_mm') for name in found.varied) or 'one design'}"
@@ -204,11 +204,11 @@ def _save(
 def _assembled(
     axes: Mapping[str, tuple[float, ...]],
     designs: Sequence[ShellDesign | BenchlabError],
-    study: Study,
+    conditions: Conditions,
     done: _Progressing,
     partial: bool,
 ) -> Sweep:
-    shape = (len(designs), len(study.pressures_MPa))
+    shape = (len(designs), len(conditions.pressures_MPa))
     curves = {name: np.full(shape, np.nan) for name in CURVES}
     limits, areas = np.full(len(designs), np.nan), np.full(len(designs), np.nan)
     reasons, keys = [], []
@@ -224,8 +224,8 @@ def _assembled(
             if (limit := result["limit_pressure_MPa"]) is not None:
                 limits[index] = limit
                 reasons[-1] = f"no stable state beyond {limit:.4g} MPa: it bursts"
-    settings = {"axes": {name: list(values) for name, values in axes.items()}, **study.as_json()}
-    return Sweep(axes, np.array(study.pressures_MPa), curves, {"tpu_area_mm2": areas, "limit_pressure_MPa": limits},
+    settings = {"axes": {name: list(values) for name, values in axes.items()}, **conditions.as_json()}
+    return Sweep(axes, np.array(conditions.pressures_MPa), curves, {"tpu_area_mm2": areas, "limit_pressure_MPa": limits},
                  tuple(reasons), tuple(keys), settings, made_by("numpy", "scipy"), partial)  # fmt: skip
 
 

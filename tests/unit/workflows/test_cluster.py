@@ -18,7 +18,7 @@ from benchlab.io.layup_file import read_layup
 from benchlab.simulation.actuator_response import Fixture
 from benchlab.workflows.batch import run_batch
 from benchlab.workflows.cluster import run_anywhere, run_on_cluster
-from benchlab.workflows.simulated import Study, simulate_design
+from benchlab.workflows.simulated import Conditions, simulate_design
 
 DESIGNS = [ShellDesign(slw, 3) for slw in (4, 6, 8, 10, 12, 14)]
 
@@ -55,8 +55,8 @@ def workers(scheduler, tmp_path):
 def test_a_killed_worker_changes_neither_the_number_of_results_nor_the_numbers(scheduler, workers):
     from distributed import Client
 
-    study = Study(read_layup("trial"), (0.1, 0.2), Fixture(), blocked=False)
-    work = functools.partial(simulate_design, study=study)
+    conditions = Conditions(read_layup("trial"), (0.1, 0.2), Fixture(), blocked=False)
+    work = functools.partial(simulate_design, conditions=conditions)
     found, killed = {}, None
     with Client(scheduler, timeout=15, set_as_default=False) as client:
         client.wait_for_workers(2, timeout=30)

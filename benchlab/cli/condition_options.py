@@ -36,11 +36,11 @@ OPTIONS = (
 )
 
 
-def study_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Add OPTIONS; `command` is given `study` (pressures_MPa, cap_mm, blocked -> Study), `jobs`, `scheduler`, `out`, `as_json`."""
+def condition_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add OPTIONS; `command` is given `conditions` (pressures_MPa, cap_mm, blocked -> Conditions) and the other options."""
 
     @functools.wraps(command)
-    def with_study(
+    def with_conditions(
         *args: Any,
         material: str | None,
         lever_arm_mm: float | None,
@@ -51,15 +51,15 @@ def study_options(command: Callable[..., Any]) -> Callable[..., Any]:
     ) -> Any:
         if jobs is not None and scheduler is not None:
             raise UsageError("--jobs and --scheduler are both given", hint="give one of them")
-        study = functools.partial(_study, material, lever_arm_mm, contact_area_mm2)
-        return command(*args, study=study, jobs=jobs or os.cpu_count() or 1, scheduler=scheduler, **options)
+        conditions = functools.partial(_conditions, material, lever_arm_mm, contact_area_mm2)
+        return command(*args, conditions=conditions, jobs=jobs or os.cpu_count() or 1, scheduler=scheduler, **options)
 
     for option in reversed(OPTIONS):
-        with_study = option(with_study)
-    return with_study
+        with_conditions = option(with_conditions)
+    return with_conditions
 
 
-def _study(
+def _conditions(
     material: str | None,
     lever_arm_mm: float | None,
     contact_area_mm2: float | None,
@@ -70,10 +70,10 @@ def _study(
     """Raises UsageError or InputError for a material that cannot be read, or a fixture that is none."""
     from benchlab.io.layup_file import DEFAULT_LAYUP, read_layup
     from benchlab.simulation.actuator_response import Fixture
-    from benchlab.workflows.simulated import Study
+    from benchlab.workflows.simulated import Conditions
 
     if lever_arm_mm is not None and contact_area_mm2 is not None:
         raise UsageError("--lever-arm-mm and --contact-area-mm2 are both given", hint="give one of them")
     given = {"lever_arm_mm": lever_arm_mm, "contact_area_mm2": contact_area_mm2}
     fixture = Fixture() if lever_arm_mm is None and contact_area_mm2 is None else Fixture(**given)
-    return Study(read_layup(material or DEFAULT_LAYUP), pressures_MPa, fixture, cap_mm, blocked)
+    return Conditions(read_layup(material or DEFAULT_LAYUP), pressures_MPa, fixture, cap_mm, blocked)
