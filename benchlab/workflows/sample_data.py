@@ -18,6 +18,7 @@ from benchlab.io.video_writer import VideoWriter
 from benchlab.vision.picture import FloatArray
 from benchlab.vision.synthetic import Scene, draw_frames
 from benchlab.workflows.sample_data_readme import readme
+from benchlab.workflows.sample_tensile import tensile_text
 
 Progress = Callable[[int, int | None], None]
 
@@ -82,9 +83,12 @@ def make_sample_data(out: Path, seed: int = 1, progress: Progress | None = None)
     tables = {"truth.csv": truth_rows(clips), "truth_series.csv": series_rows(clips), "pressure_log.csv": log_rows()}
     for name, rows in tables.items():
         _write_csv(out / name, rows)
-    with written_whole(out / "README.md") as temporary:
-        temporary.write_text(readme(_design_rows(clips), CONCAVITY, seed), encoding="utf-8", newline="\n")
-    return [*written, *(out / name for name in (*tables, "README.md"))]
+    texts = sample_texts(clips, seed)
+    for name, text in texts.items():
+        (out / name).parent.mkdir(exist_ok=True)
+        with written_whole(out / name) as temporary:
+            temporary.write_text(text, encoding="utf-8", newline="\n")
+    return [*written, *(out / name for name in (*tables, *texts))]
 
 
 def sample_clips(seed: int) -> tuple[SampleClip, ...]:
@@ -103,6 +107,14 @@ def sample_clips(seed: int) -> tuple[SampleClip, ...]:
             scene = _scene(rng, design.length_mm / scale, len(clips))
             clips.append(SampleClip(design, sample, float(np.deg2rad(round(angle_deg, 4))), scale, scene))
     return tuple(clips)
+
+
+def sample_texts(clips: Iterable[SampleClip], seed: int) -> dict[str, str]:
+    """The files beside the clips that are text of their own making, by their place in the folder."""
+    return {
+        "tensile_drawn.csv": tensile_text(seed),
+        "README.md": readme(_design_rows(clips), CONCAVITY, seed),
+    }
 
 
 def times_s() -> FloatArray:

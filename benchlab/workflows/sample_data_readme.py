@@ -41,6 +41,8 @@ its ends.
 - `truth_series.csv`, one row per frame: `file`, `time_s`, `pressure_MPa`, `angle_deg`, in the middle of the exposure.
 - `pressure_log.csv`, the same pressure at 100 Hz as a bench would log it, for `benchlab analyze --pressure`: `time_s`,
   `pressure_kPa`. Drawn too.
+- `tensile_drawn.csv`: a tensile test as a testing machine exports it, for `benchlab fit-material`. Drawn: a Yeoh film whose
+  coefficients, and the noise, stand in its first line.
 
 The same seed draws the same pictures; the files are the same bytes only with the same version of the encoder.
 """

@@ -91,6 +91,7 @@ def test_the_folder_holds_clips_tables_and_a_readme_that_say_they_are_drawn(smal
         "truth.csv",
         "truth_series.csv",
         "pressure_log.csv",
+        "tensile_drawn.csv",
         "README.md",
     }
     assert {path for path in (tmp_path / "new").rglob("*") if path.is_file()} == set(written)
@@ -179,3 +180,9 @@ def test_the_markers_of_a_clip_in_the_repository_are_where_the_truth_says() -> N
             errors.append(np.hypot(*(found - place)))
     assert np.mean(errors) < 0.06
     assert np.percentile(errors, 95) < 0.15
+
+
+def test_the_texts_in_the_repository_are_those_that_the_command_writes() -> None:
+    folder = Path(__file__).resolve().parents[3] / "sample_data"
+    for name, text in sample_data.sample_texts(sample_clips(1), 1).items():
+        assert (folder / name).read_text(encoding="utf-8") == text, f"{name}: run `benchlab sample-data`"
