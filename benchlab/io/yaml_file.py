@@ -143,6 +143,9 @@ def _note_lines(path: Path, node: Node, place: Place, lines: dict[Place, int]) -
             if not isinstance(key, ScalarNode) or not str(key.tag).endswith(":str"):
                 shown = key.value if isinstance(key, ScalarNode) else "a list or mapping"
                 raise InputError(f"key {shown!r} is not text", file=path, where=f"line {line}", hint="quote it")
+            if (first := lines.get((*place, key.value))) is not None:
+                what = f"duplicate key {_name((*place, key.value))}, already on line {first}"
+                raise InputError(what, file=path, where=f"line {line}", hint="remove or rename one of them")
             lines[(*place, key.value)] = line
             _note_lines(path, value, (*place, key.value), lines)
     elif isinstance(node, SequenceNode):

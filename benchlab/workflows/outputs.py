@@ -201,9 +201,9 @@ def content_hash(source: Path) -> str:
 
 
 def _key(content: str, settings: dict[str, Any]) -> str:
-    """One number for content, settings and version; files named in the settings enter by their content."""
+    """One number for content, settings and version; files named in the settings enter by their content, not their place."""
     inputs = {name: sha256(Path(settings[name])) for name in ("lens", "pressure") if settings.get(name)}
-    whole = json.dumps([content, settings, inputs, benchlab.__version__], sort_keys=True)
+    whole = json.dumps([content, {**settings, **inputs}, benchlab.__version__], sort_keys=True)
     return new_sha256(whole.encode()).hexdigest()
 
 

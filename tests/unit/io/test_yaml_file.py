@@ -42,7 +42,7 @@ def test_reads_yaml_1_2_into_the_model(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        (GOOD + "count: 1\ncount: 2\n", ["line 6", "duplicate", "count"]),
+        (GOOD + "count: 1\ncount: 2\n", ["line 6", "duplicate", "count", "already on line 5"]),
         (GOOD + "coun: 1\n", ["line 5", "unknown key coun", "did you mean count?"]),
         (GOOD + "count: true\n", ["line 5", "count is true", "integer"]),
         (GOOD + "count: '1'\n", ["line 5", 'count is "1"', "integer"]),
