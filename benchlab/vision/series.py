@@ -10,6 +10,10 @@ from numpy.typing import NDArray
 from benchlab.vision.picture import FloatArray
 
 
+SURE_FLAGS = ("", "markers left out")
+"""Flags of frames whose values are not in doubt."""
+
+
 @dataclass(frozen=True)
 class CurvatureSeries:
     """T frames, N markers. Every array has T rows; NaN where nothing was measured, and `flag` says why.
@@ -55,3 +59,8 @@ class CurvatureSeries:
     def measured(self) -> NDArray[np.bool_]:
         """(T,) whether the frame has an angle."""
         return np.isfinite(self.angle_rad)
+
+    @property
+    def sure(self) -> NDArray[np.bool_]:
+        """(T,) whether the frame has an angle without doubt."""
+        return self.measured & np.array([flag in SURE_FLAGS for flag in self.flag], dtype=bool)

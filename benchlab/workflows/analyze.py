@@ -84,8 +84,7 @@ def save(analysis: Analysis, settings: AnalyzeSettings, outputs: Outputs) -> dic
 def summarise(analysis: Analysis, outputs: Outputs, overlay: bool) -> dict[str, Any]:
     """The recording in a few numbers, as `--json` prints them. Largest values over the frames without doubt, if any."""
     series = analysis.series
-    sure = series.measured & np.array([flag in ("", "markers left out") for flag in series.flag])
-    rows = sure if sure.any() else series.measured
+    rows = series.sure if series.sure.any() else series.measured
     angle = np.where(rows, series.angle_rad, -np.inf)
     peak = int(np.argmax(angle))
     known = series.time_s[np.isfinite(series.time_s)]
