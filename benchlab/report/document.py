@@ -1,0 +1,169 @@
+"""A report before it is dressed: sections of words, tables and pictures, told once for the page, the PDF and the CSV files."""
+
+from __future__ import annotations
+
+import csv
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+from benchlab.errors import printable
+from benchlab.io.files import written_whole
+from benchlab.io.table import guarded
+
+Value = str | float | int | None
+
+
+class Cell(NamedTuple):
+    """A value as a machine reads it, and as a person does."""
+
+    value: Value
+    text: str
+
+
+@dataclass(frozen=True)
+class Column:
+    """name: in the CSV file, with its unit (`mean_deg`). head: on the page (`mean (°)`). number: set right."""
+
+    name: str
+    head: str
+    number: bool = True
+
+
+@dataclass(frozen=True)
+class Table:
+    """name: of its CSV file. rows: a cell a column. most: rows shown on the page; the CSV file has all."""
+
+    name: str
+    caption: str
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    note: str = ""
+    most: int = 60
+
+    @property
+    def shown(self) -> tuple[tuple[Cell, ...], ...]:
+        return self.rows[: self.most]
+
+    @property
+    def left_off(self) -> str:
+        """What to say of rows that only the CSV file has."""
+        if len(self.rows) <= self.most:
+            return ""
+        return f"The first {self.most} of {len(self.rows)} rows; all are in {self.name}.csv."
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One figure: name of its files, svg: the text of an SVG file, words: what it shows, for those who do not see it."""
+
+    name: str
+    svg: str
+    words: str
+
+
+@dataclass(frozen=True)
+class Pictures:
+    """Panels that share a caption, in a row of up to `abreast`."""
+
+    panels: tuple[Panel, ...]
+    caption: str
+    abreast: int = 2
+
+
+@dataclass(frozen=True)
+class Words:
+    """A paragraph. kind: plain, lead (large), good (a finding), warning or small."""
+
+    text: str
+    kind: str = "plain"
+
+
+@dataclass(frozen=True)
+class Items:
+    """A list; each with what it is about and what is said of it."""
+
+    rows: tuple[tuple[str, str], ...]
+
+
+Block = Words | Items | Table | Pictures
+
+
+@dataclass(frozen=True)
+class Section:
+    title: str
+    blocks: tuple[Block, ...]
+
+
+@dataclass(frozen=True)
+class Document:
+    """statement: what must be known before anything is read (drawn data), or empty. facts: the lines under the title."""
+
+    title: str
+    statement: str
+    facts: tuple[str, ...]
+    sections: tuple[Section, ...]
+    foot: str = ""
+
+    def blocks(self) -> Iterator[Block]:
+        for section in self.sections:
+            yield from section.blocks
+
+    @property
+    def tables(self) -> tuple[Table, ...]:
+        return tuple(block for block in self.blocks() if isinstance(block, Table))
+
+    @property
+    def panels(self) -> tuple[Panel, ...]:
+        return tuple(panel for block in self.blocks() if isinstance(block, Pictures) for panel in block.panels)
+
+
+def write_table(path: Path, table: Table) -> None:
+    """A table as CSV: every row, every digit, an empty cell for what is not known. InputError where the disk refuses."""
+    with (
+        written_whole(path) as temporary,
+        temporary.open("w", encoding="utf-8", errors="backslashreplace", newline="") as file,
+    ):
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow([column.name for column in table.columns])
+        writer.writerows([_machine(cell.value) for cell in row] for row in table.rows)
+
+
+def cut(text: object, length: int = 60) -> str:
+    """Text as the page shows it: control characters escaped, the middle of a long one cut out.
+
+    >>> cut("slw\\x1b5"), cut("a" * 30 + ".mp4", 12)
+    ('slw\\\\x1b5', 'aaaaaaa….mp4')
+    """
+    plain = printable(text)
+    if len(plain) <= length:
+        return plain
+    tail = min(max(4, length // 4), length // 2)
+    return plain[: length - tail - 1] + "…" + plain[-tail:]
+
+
+def cut_apart(names: Sequence[str], length: int) -> list[str]:
+    """Names cut to a length; those that would look alike then are numbered.
+
+    >>> cut_apart(["x" * 30 + "1_end", "x" * 30 + "2_end", "short"], 12)
+    ['xxxx…_end #1', 'xxxx…_end #2', 'short']
+    """
+    short = [cut(name, length) for name in names]
+    alike = Counter(short)
+    told: Counter[str] = Counter()
+    for index, name in enumerate(short):
+        if alike[name] > 1:
+            told[name] += 1
+            tag = f" #{told[name]}"
+            short[index] = cut(names[index], max(length - len(tag), 5)) + tag
+    return short
+
+
+def _machine(value: Value) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, str):
+        return guarded(value)
+    return repr(value) if isinstance(value, float) else str(value)

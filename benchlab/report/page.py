@@ -1,0 +1,46 @@
+"""A report as one HTML page that needs nothing else: style and figures inside, no script, everything escaped."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+
+from benchlab.report.document import Block, Document, Items, Panel, Pictures, Table, Words
+from benchlab.report.svg import inline_svg
+
+
+def render_page(document: Document) -> str:
+    """The page as text. It asks for nothing: its policy forbids every request."""
+    from jinja2 import Environment, FunctionLoader, StrictUndefined
+    from markupsafe import Markup
+
+    def inline(panel: Panel) -> Markup:
+        return Markup(inline_svg(panel.svg, panel.name, panel.words))
+
+    environment = Environment(
+        loader=FunctionLoader(template),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["inline"] = inline
+    for name, kind in {"words": Words, "items": Items, "pictures": Pictures}.items():
+        environment.tests[name] = lambda block, kind=kind: isinstance(block, kind)
+    page = environment.get_template("report.html.j2")
+    return page.render(document=document, css=Markup(template("report.css")), numbers=numbered(document))
+
+
+def template(name: str) -> str:
+    """The text of a file in `report/templates`."""
+    return (files("benchlab.report") / "templates" / name).read_text(encoding="utf-8")
+
+
+def numbered(document: Document) -> dict[Block, int]:
+    """The numbers of figures and of tables, each counted from 1 in the order of the page."""
+    counts = {Table: 0, Pictures: 0}
+    found: dict[Block, int] = {}
+    for block in document.blocks():
+        if isinstance(block, Table | Pictures):
+            counts[type(block)] += 1
+            found[block] = counts[type(block)]
+    return found
