@@ -26,11 +26,32 @@ UNITS: dict[str, dict[str, float]] = {
         "psi": 0.006894757293168361,  # 4.4482216152605 N on (25.4 mm)²
         "psig": 0.006894757293168361,
     },
-    "length": {"mm": 1.0, "cm": 10.0, "m": 1000.0, "µm": 1e-3, "in": 25.4},
-    "force": {"N": 1.0, "kN": 1000.0, "mN": 1e-3, "lbf": 4.4482216152605, "kgf": 9.80665, "gf": 9.80665e-3},
-    "time": {"s": 1.0, "sec": 1.0, "ms": 1e-3, "µs": 1e-6, "min": 60.0},
+    "length": {"mm": 1.0, "cm": 10.0, "m": 1000.0, "µm": 1e-3, "in": 25.4, "ft": 304.8},
+    "force": {
+        **{"N": 1.0, "kN": 1000.0, "daN": 10.0, "mN": 1e-3, "kgf": 9.80665, "gf": 9.80665e-3},
+        **{"lbf": 4.4482216152605, "kip": 4448.2216152605, "ozf": 0.27801385095378125},
+    },
+    "time": {"s": 1.0, "sec": 1.0, "ms": 1e-3, "µs": 1e-6, "min": 60.0, "hr": 3600.0},
 }
 """Factor of each unit to MPa, mm, N and s, by quantity. `g` marks a gauge pressure; absolute ones are not converted."""
+
+SPELLINGS = {
+    **dict.fromkeys(("newton", "newtons", "н", "牛", "牛顿"), "N"),
+    **dict.fromkeys(("кн", "千牛", "kilonewton"), "kN"),
+    **dict.fromkeys(("kp", "кгс"), "kgf"),
+    **dict.fromkeys(("lb", "lbs", "pounds"), "lbf"),
+    **dict.fromkeys(("kips", "klbf"), "kip"),
+    **dict.fromkeys(("мм", "毫米", "millimeter", "millimeters"), "mm"),
+    **dict.fromkeys(("inch", "inches", "zoll", "pulg"), "in"),
+    **dict.fromkeys(
+        ("second", "seconds", "secs", "sec.", "sek", "sek.", "sekunden", "seg", "segundos", "с", "秒"), "s"
+    ),
+    **dict.fromkeys(("msec", "毫秒"), "ms"),
+    **dict.fromkeys(("minutes", "分"), "min"),
+    **dict.fromkeys(("n/mm²", "n/mm^2", "n/mm2", "мпа", "兆帕"), "MPa"),
+    **dict.fromkeys(("кпа", "千帕"), "kPa"),
+}
+"""Other spellings, in lower case, of the units that labs write out or write in their own language."""
 
 _BRACKETED = re.compile(r"^(?P<name>.*?)\s*[(\[{](?P<unit>[^()\[\]{}]*)[)\]}]\s*$", re.DOTALL)
 _SEPARATED = re.compile(r"^(?P<name>.*?)\s*(?:[_\s/,]|\bin\b)\s*(?P<unit>[A-Za-zµμ]+)\s*$", re.DOTALL)
@@ -54,7 +75,8 @@ def known_unit(text: str) -> tuple[str, str] | None:
         for unit in table:
             if len(unit) > 1 and text.lower() == unit.lower():
                 return quantity, unit
-    return None
+    spelt = SPELLINGS.get(text.lower())
+    return known_unit(spelt) if spelt else None
 
 
 def to_MPa(value: ArrayLike, unit: str) -> FloatArray:

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from benchlab.vision.picture import FloatArray
 
-
 SURE_FLAGS = ("", "markers left out")
 """Flags of frames whose values are not in doubt."""
 
