@@ -16,6 +16,15 @@ SYMBOLS = {
 }
 """The paper's symbol of each field of a design."""
 
+DIMENSIONS = {
+    "tw_mm": "window_width_mm",
+    "slw_mm": "strip_width_mm",
+    "fw_mm": "rib_width_mm",
+    "perimeter_mm": "perimeter_mm",
+    "length_mm": "length_mm",
+}
+"""Field of a design by its short name, as options, sweeps and studies have it."""
+
 
 @dataclass(frozen=True)
 class ShellDesign:

@@ -58,11 +58,11 @@ def sweep(
     """
     import json
 
+    from benchlab.actuator import DIMENSIONS
     from benchlab.cli.progress import progress
-    from benchlab.workflows.sweep import AXES
     from benchlab.workflows.sweep import sweep as run
 
-    axes = {name: options[name] for name in AXES}
+    axes = {name: options[name] for name in DIMENSIONS}
     with progress("designs", quiet=False) as report:
         try:
             found = run(

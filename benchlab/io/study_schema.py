@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, Field, ValidationError, field_validator, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
-from benchlab.actuator import ShellDesign
+from benchlab.actuator import DIMENSIONS, ShellDesign
 from benchlab.errors import BenchlabError
 from benchlab.io.pressure import MAX_PRESSURE_MPA, ramp
 from benchlab.io.study_values import ALL_DESIGNS
@@ -22,15 +22,6 @@ from benchlab.io.yaml_file import Document
 
 MAX_NAME = 80
 """Characters in the name of a design or a sample, which is also that of a folder."""
-
-SHELL = {
-    "tw_mm": "window_width_mm",
-    "slw_mm": "strip_width_mm",
-    "fw_mm": "rib_width_mm",
-    "perimeter_mm": "perimeter_mm",
-    "length_mm": "length_mm",
-}
-"""Key of each dimension in a study file, and the field of a `ShellDesign` that it is."""
 
 _NOT_IN_NAMES = re.compile(r'[/\\:*?"<>|]')
 
@@ -198,7 +189,7 @@ class ShellDocument(Document):
 
     def design(self) -> ShellDesign:
         """The design of the dimensions. Raises UsageError for an impossible one."""
-        return ShellDesign(**{field: getattr(self, key) for key, field in SHELL.items()})
+        return ShellDesign(**{field: getattr(self, key) for key, field in DIMENSIONS.items()})
 
     @model_validator(mode="after")
     def _possible(self) -> ShellDocument:

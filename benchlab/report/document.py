@@ -25,10 +25,11 @@ class Cell(NamedTuple):
 
 @dataclass(frozen=True)
 class Column:
-    """name: in the CSV file, with its unit (`mean_deg`). head: on the page (`mean (°)`). number: set right."""
+    """name: in the CSV file, with its unit (`mean_deg`). head: on the page (`mean (°)`). Either may be "": not there.
+    number: set right."""
 
     name: str
-    head: str
+    head: str = ""
     number: bool = True
 
 
@@ -44,15 +45,21 @@ class Table:
     most: int = 60
 
     @property
-    def shown(self) -> tuple[tuple[Cell, ...], ...]:
-        return self.rows[: self.most]
+    def heads(self) -> tuple[Column, ...]:
+        """The columns of the page."""
+        return tuple(column for column in self.columns if column.head)
 
     @property
-    def left_off(self) -> str:
-        """What to say of rows that only the CSV file has."""
-        if len(self.rows) <= self.most:
-            return ""
-        return f"The first {self.most} of {len(self.rows)} rows; all are in {self.name}.csv."
+    def shown(self) -> tuple[tuple[str, ...], ...]:
+        """The texts of the page, row by row."""
+        kept = [index for index, column in enumerate(self.columns) if column.head]
+        return tuple(tuple(row[index].text for index in kept) for row in self.rows[: self.most])
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What stands under it, first of all that the page does not have all rows."""
+        left_off = f"The first {self.most} of {len(self.rows)} rows; all are in {self.name}.csv."
+        return tuple(line for line in (left_off * (len(self.rows) > self.most), self.note) if line)
 
 
 @dataclass(frozen=True)
@@ -99,13 +106,15 @@ class Section:
 
 @dataclass(frozen=True)
 class Document:
-    """statement: what must be known before anything is read (drawn data), or empty. facts: the lines under the title."""
+    """statement: what must be known before anything is read (drawn data), or empty. facts: the lines under the title.
+    data: tables that are CSV files and not on the page."""
 
     title: str
     statement: str
     facts: tuple[str, ...]
     sections: tuple[Section, ...]
     foot: str = ""
+    data: tuple[Table, ...] = ()
 
     def blocks(self) -> Iterator[Block]:
         for section in self.sections:
@@ -113,7 +122,8 @@ class Document:
 
     @property
     def tables(self) -> tuple[Table, ...]:
-        return tuple(block for block in self.blocks() if isinstance(block, Table))
+        """All that are CSV files."""
+        return (*(block for block in self.blocks() if isinstance(block, Table)), *self.data)
 
     @property
     def panels(self) -> tuple[Panel, ...]:
@@ -127,8 +137,9 @@ def write_table(path: Path, table: Table) -> None:
         temporary.open("w", encoding="utf-8", errors="backslashreplace", newline="") as file,
     ):
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow([column.name for column in table.columns])
-        writer.writerows([_machine(cell.value) for cell in row] for row in table.rows)
+        kept = [index for index, column in enumerate(table.columns) if column.name]
+        writer.writerow([table.columns[index].name for index in kept])
+        writer.writerows([_machine(row[index].value) for index in kept] for row in table.rows)
 
 
 def cut(text: object, length: int = 60) -> str:

@@ -64,7 +64,7 @@ def _block(block: Block, number: int | None) -> dict[str, Any]:
         "kind": "table",
         "number": number,
         "caption": block.caption,
-        "columns": [{"head": column.head, "number": column.number} for column in block.columns],
-        "rows": [[cell.text for cell in row] for row in block.shown],
-        "notes": [line for line in (block.left_off, block.note) if line],
+        "columns": [{"head": column.head, "number": column.number} for column in block.heads],
+        "rows": [list(row) for row in block.shown],
+        "notes": list(block.notes),
     }

@@ -10,13 +10,13 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from benchlab.report.brackets import Bracket, stack_brackets
 from benchlab.report.document import cut_apart
 from benchlab.report.figures import DPI, figure_class
 from benchlab.report.panels import BAND, BLUE, GREY, dress
 from benchlab.report.wording import drawable
+from benchlab.units import FloatArray
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,11 +28,13 @@ HALF_IN, THIRD_IN = 4.7, 3.1
 MOST_BRACKETED, MOST_ROWS = 6, 40
 """Groups up to which bars stand with brackets; rows up to which groups or pairs are drawn at all."""
 
-FloatArray = NDArray[np.float64]
-_POINT, _OTHER = "#333333", "#D55E00"
+OTHER = "#D55E00"
+"""Colour of what stands beside the first: simulated, the other method, beyond a limit."""
+
+TEXT: dict[str, Any] = {"parse_math": False, "fontsize": 8.5}
+_POINT = "#333333"
 _BARS_IN, _STEP_IN, _ROW_IN = 2.55, 0.21, 0.22
 _TICK_LETTERS = 50  # that stand side by side under bars
-_TEXT: dict[str, Any] = {"parse_math": False, "fontsize": 8.5}
 
 
 @dataclass(frozen=True)
@@ -75,10 +77,10 @@ def draw_bars(bars: Sequence[Bar], pairs: Sequence[tuple[int, int, str]], label:
     """
     if len(bars) > MOST_BRACKETED:
         shown = bars[:MOST_ROWS]
-        figure, ax = _panel(HALF_IN, 0.85 + _ROW_IN * len(shown), bottom=0.73)
+        figure, ax = new_panel(HALF_IN, 0.85 + _ROW_IN * len(shown), bottom=0.73)
         plot_rows(ax, shown, label)
     else:
-        figure, ax = _panel(HALF_IN, _BARS_IN + _STEP_IN * (_levels(pairs) + 1) + 0.82, bottom=0.7)
+        figure, ax = new_panel(HALF_IN, _BARS_IN + _STEP_IN * (_levels(pairs) + 1) + 0.82, bottom=0.7)
         plot_bars(ax, bars, pairs, label, _BARS_IN, _STEP_IN)
     _finish(figure, ax)
     return figure
@@ -110,7 +112,7 @@ def plot_bars(
     top = max([*reach, *(bracket.height for bracket in brackets)])
     ax.set_ylim(bottom * 1.06, top + 1.1 * step_in * per_in)
     ax.set_xlim(-0.6, len(bars) - 0.4)
-    ax.set_xticks(at, _two_lines([bar.name for bar in bars], _TICK_LETTERS // max(len(bars), 3)), **_TEXT)
+    ax.set_xticks(at, _two_lines([bar.name for bar in bars], _TICK_LETTERS // max(len(bars), 3)), **TEXT)
     dress(ax, None, label)
     ax.grid(False, axis="x")
     ax.tick_params(axis="x", length=0, labelsize=8.5, labelcolor="black")
@@ -134,7 +136,7 @@ def plot_rows(ax: Axes, bars: Sequence[Bar], label: str) -> None:
 def draw_intervals(intervals: Sequence[Interval], label: str, confidence: float) -> Figure:
     """Differences of means with simultaneous intervals, a row a pair; the first MOST_ROWS of them."""
     shown = intervals[:MOST_ROWS]
-    figure, ax = _panel(HALF_IN, 0.95 + 0.27 * len(shown), bottom=0.73)
+    figure, ax = new_panel(HALF_IN, 0.95 + 0.27 * len(shown), bottom=0.73)
     plot_intervals(ax, shown, label, confidence)
     _finish(figure, ax)
     return figure
@@ -144,7 +146,7 @@ def plot_intervals(ax: Axes, intervals: Sequence[Interval], label: str, confiden
     """Tukey's interval over that of Games and Howell for each pair, against a line at no difference."""
     ax.axvline(0, color=GREY, linewidth=0.9, zorder=1)
     for index, (name, colour, marker, offset) in enumerate(
-        (("Tukey HSD", BLUE, "o", -0.17), ("Games–Howell", _OTHER, "s", 0.17))
+        (("Tukey HSD", BLUE, "o", -0.17), ("Games–Howell", OTHER, "s", 0.17))
     ):
         found = [(y, one.games_howell if index else one.tukey) for y, one in enumerate(intervals)]
         rows = [(y + offset, *values) for y, values in found if values is not None]
@@ -160,7 +162,7 @@ def plot_intervals(ax: Axes, intervals: Sequence[Interval], label: str, confiden
 
 def draw_angle_band(band: AngleBand, y_limits: tuple[float, float] | None = None) -> Figure:
     """θ against pressure of one design; y_limits: those that it shares with the other designs."""
-    figure, ax = _panel(THIRD_IN, 2.5, left=0.55, bottom=0.46, top=0.28)
+    figure, ax = new_panel(THIRD_IN, 2.5, left=0.55, bottom=0.46, top=0.28)
     plot_angle_band(ax, band)
     if y_limits is not None:
         ax.set_ylim(*y_limits)
@@ -176,7 +178,7 @@ def plot_angle_band(ax: Axes, band: AngleBand) -> None:
     ax.fill_between(band.pressure_MPa, low, high, color=BAND, linewidth=0, zorder=1)
     ax.plot(band.pressure_MPa, band.mean_deg, color=BLUE, linewidth=1.5, zorder=3)
     if band.simulated is not None:
-        ax.plot(*band.simulated, color=_OTHER, linewidth=1.3, linestyle=(0, (4, 2)), zorder=4)
+        ax.plot(*band.simulated, color=OTHER, linewidth=1.3, linestyle=(0, (4, 2)), zorder=4)
     ax.margins(x=0)
     dress(ax, "pressure (MPa)", "bending angle θ (°)")
 
@@ -196,8 +198,8 @@ def spread(count: int) -> FloatArray:
     return 2 * found - 1
 
 
-def _panel(width: float, height: float, bottom: float, left: float = 0.62, top: float = 0.12) -> tuple[Figure, Axes]:
-    """A figure of one axes, with margins in inches."""
+def new_panel(width: float, height: float, bottom: float, left: float = 0.62, top: float = 0.12) -> tuple[Figure, Axes]:
+    """A figure of one axes; all in inches."""
     figure = figure_class()(figsize=(width, height), dpi=DPI)
     box = (left / width, bottom / height, (width - left - 0.1) / width, (height - bottom - top) / height)
     return figure, figure.add_axes(box)
@@ -263,7 +265,7 @@ def _simulated(ax: Axes, at: FloatArray, bars: Sequence[Bar], upright: bool) -> 
     if known:
         x, angle = np.array(known, dtype=float).T
         across, along = (x, angle) if upright else (angle, x)
-        ax.plot(across, along, "D", color=_OTHER, markersize=4.5, markerfacecolor="white", markeredgewidth=1.2, zorder=6,
+        ax.plot(across, along, "D", color=OTHER, markersize=4.5, markerfacecolor="white", markeredgewidth=1.2, zorder=6,
                 label="simulated")  # fmt: skip
 
 
@@ -278,6 +280,6 @@ def _lowest(bar: Bar) -> float:
 
 
 def _name_rows(ax: Axes, names: Sequence[str], length: int = 22) -> None:
-    ax.set_yticks(range(len(names)), [drawable(name, 10_000) for name in cut_apart(names, length)], **_TEXT)
+    ax.set_yticks(range(len(names)), [drawable(name, 10_000) for name in cut_apart(names, length)], **TEXT)
     ax.set_ylim(len(names) - 0.4, -0.6)
     ax.tick_params(axis="y", length=0)

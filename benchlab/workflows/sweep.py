@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from benchlab.actuator import ShellDesign
+from benchlab.actuator import DIMENSIONS, ShellDesign
 from benchlab.errors import BenchlabError, UsageError
 from benchlab.io.files import sha256
 from benchlab.io.published import published_angles
@@ -21,15 +21,6 @@ from benchlab.workflows.cluster import run_anywhere
 from benchlab.workflows.outputs import Outputs
 from benchlab.workflows.provenance import made_by
 from benchlab.workflows.simulated import Conditions, simulate_design
-
-AXES = {
-    "tw_mm": "window_width_mm",
-    "slw_mm": "strip_width_mm",
-    "fw_mm": "rib_width_mm",
-    "perimeter_mm": "perimeter_mm",
-    "length_mm": "length_mm",
-}
-"""Which field of a design an axis fills."""
 
 MOST_DESIGNS = 20_000
 SAVE_EVERY_S = 30.0
@@ -68,7 +59,7 @@ def sweep(
     overwrite: bool = False,
     progress: Progress | None = None,
 ) -> dict[str, Any]:
-    """Simulate all combinations of `axes` (names of AXES -> values in mm) and write STEM.h5, .csv and .png into `out`.
+    """Simulate all combinations of `axes` (names of DIMENSIONS -> values in mm) and write STEM.h5, .csv and .png into `out`.
 
     Designs that an earlier, even interrupted, run wrote there with the same conditions and code are not simulated again. A design
     that cannot be made or simulated is a row with its reason. Returns what was found, as `--json` shows it.
@@ -118,7 +109,7 @@ def _designs(axes: Mapping[str, tuple[float, ...]]) -> list[ShellDesign | Benchl
     found: list[ShellDesign | BenchlabError] = []
     for combination in itertools.product(*axes.values()):
         try:
-            found.append(ShellDesign(**dict(zip((AXES[name] for name in axes), combination))))
+            found.append(ShellDesign(**dict(zip((DIMENSIONS[name] for name in axes), combination))))
         except BenchlabError as error:
             found.append(error)
     errors = [item for item in found if isinstance(item, BenchlabError)]
@@ -131,7 +122,7 @@ def _stem(axes: Mapping[str, tuple[float, ...]]) -> str:
     """`sweep_tw3_slw1-30`: fields that differ from the paper's, with their ends."""
     parts = []
     for name, values in axes.items():
-        if values != (getattr(ShellDesign, AXES[name], None),):
+        if values != (getattr(ShellDesign, DIMENSIONS[name], None),):
             ends = f"{values[0]:g}" + (f"-{values[-1]:g}" if len(values) > 1 else "")
             parts.append(name.removesuffix("_mm") + ends)
     return "_".join(["sweep", *parts])

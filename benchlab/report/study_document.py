@@ -1,0 +1,113 @@
+"""A repeatability report as a document: what a reader looks for first stands first."""
+
+from __future__ import annotations
+
+from benchlab.report.document import Block, Cell, Column, Document, Items, Section, Table, Words, cut
+from benchlab.report.rounding import words
+from benchlab.report.study_pictures import bands_blocks, bars_blocks, consistency_blocks, intervals_blocks
+from benchlab.report.study_published import published_section
+from benchlab.report.study_report import StudyReport
+from benchlab.report.study_statistics import (
+    assumptions_table,
+    components_blocks,
+    consistency_table,
+    consistency_words,
+    found_sets,
+    pairs_table,
+    power_blocks,
+    tests_table,
+    warnings_of,
+)
+from benchlab.report.study_tables import designs_table, samples_table
+from benchlab.report.study_verdict import verdict_section
+
+MOST_LISTED = 100
+
+
+def study_document(report: StudyReport) -> Document:
+    """The whole report. The study's notes stand at its top, so that what is drawn or simulated is known before it is read."""
+    tests: tuple[Block, ...] = (tests_table(report),) if found_sets(report) else ()
+    pairs: tuple[Block, ...] = (pairs_table(report),) if found_sets(report) else ()
+    sections = [
+        verdict_section(report),
+        Section("The designs", (designs_table(report), *bars_blocks(report))),
+        Section("Angle against pressure", tuple(bands_blocks(report))),
+        Section("Do they differ?", (*tests, *intervals_blocks(report), *pairs)),
+        *_repeatability(report),
+        *filter(None, (published_section(report),)),
+        *_doubts(report),
+        Section("Every sample", (samples_table(report),)),
+        _provenance(report),
+    ]
+    return Document(
+        title=cut(report.values.title, 140),
+        statement=cut(report.values.notes.strip(), 600),
+        facts=_facts(report),
+        sections=tuple(section for section in sections if section.blocks),
+        foot=f"Written by benchlab {report.provenance['versions']['benchlab']}. This page asks nothing of the network.",
+        data=(consistency_table(report),) if report.whole.found else (),
+    )
+
+
+def _facts(report: StudyReport) -> tuple[str, ...]:
+    values = report.values
+    samples = sum(len(design.counted) for design in values.designs)
+    recordings = sum(len(sample.recordings) for design in values.designs for sample in design.samples)
+    return (
+        f"{_many(len(values.designs), 'design')}, {_many(samples, 'sample')}, {_many(recordings, 'recording')}",
+        f"bending angle at {values.pressure_MPa:g} MPa",
+        report.provenance["created"][:10],
+    )
+
+
+def _repeatability(report: StudyReport) -> list[Section]:
+    found = report.whole.found
+    doubtful = (consistency_words(found),) if found is not None else ()
+    if not found_sets(report):
+        return []
+    return [
+        Section("How well do they repeat?", (*components_blocks(report), *consistency_blocks(report), *doubtful)),
+        Section("How far to trust this", (assumptions_table(report), *power_blocks(report))),
+    ]
+
+
+def _doubts(report: StudyReport) -> list[Section]:
+    """What was left out and why, what failed, and every warning."""
+    values = report.values
+    blocks: list[Block] = []
+    for what, found in (("Failed or missing", values.failures), ("Left out by the study file", values.left_out)):
+        if found:
+            blocks += [Words(f"{what}: {len(found)}."), _items([(one.what, one.why) for one in found])]
+    if not blocks:
+        blocks.append(Words("Nothing: every recording of the study has a value and counts."))
+    warnings = [*warnings_of(report), *((one.what, one.why) for one in values.warnings)]
+    sections = [Section("Left out and failed", tuple(blocks))]
+    if warnings:
+        sections.append(Section("Warnings", (_items(warnings),)))
+    return sections
+
+
+def _items(rows: list[tuple[str, str]]) -> Items:
+    shown = [(cut(what, 160), cut(why, 400)) for what, why in rows[:MOST_LISTED]]
+    if len(rows) > MOST_LISTED:
+        shown.append((f"and {len(rows) - MOST_LISTED} more", "all are in report.json"))
+    return Items(tuple(shown))
+
+
+def _provenance(report: StudyReport) -> Section:
+    made = report.provenance
+    versions = ", ".join(f"{name} {version}" for name, version in made["versions"].items())
+    rows = [("Command", " ".join(made["argv"])), ("Made", made["created"]), ("Versions", versions)]
+    if made.get("git"):
+        rows.append(("Source", f"commit {made['git']}"))
+    inputs = tuple((words(name, 80), Cell(digest, f"{digest[:16]}…")) for name, digest in report.values.inputs.items())
+    columns = (Column("file", "file", False), Column("sha256", "SHA-256", False))
+    note = "The whole sums stand in the CSV file and in report.json."
+    return Section(
+        "Provenance",
+        (Items(tuple((what, cut(text, 400)) for what, text in rows)), Table("inputs", "What was read.", columns, inputs, note)),
+    )  # fmt: skip
+
+
+def _many(number: int, what: str) -> str:
+    return f"{number} {what}{'s' * (number != 1)}"

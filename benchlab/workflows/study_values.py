@@ -1,0 +1,268 @@
+"""All recordings of a study analysed, those that changed again, and the angles of all cycles at the study's pressure."""
+
+from __future__ import annotations
+
+import functools
+import math
+import os
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchlab.errors import BenchlabError, UsageError
+from benchlab.io.files import check_regular_file, reason_of, sha256
+from benchlab.io.run_file import read_provenance
+from benchlab.io.study_file import Study, StudyDesign, StudyRecording, StudySample
+from benchlab.io.study_values import (
+    CycleValue,
+    DesignValues,
+    Missing,
+    RecordingValues,
+    SampleValues,
+    Simulated,
+    StudyValues,
+)
+from benchlab.workflows.analyze import analyze
+from benchlab.workflows.batch import run_batch
+from benchlab.workflows.outputs import Outputs
+from benchlab.workflows.settings import AnalyzeSettings
+from benchlab.workflows.study_readings import Target, read_run, read_table
+from benchlab.workflows.study_simulated import simulated_of
+
+Progress = Callable[[int, int | None], None]
+
+RECORDINGS = "recordings"
+"""Folder in the output folder with the analysed recordings, as DESIGN/SAMPLE/NAME.h5, .csv and .png."""
+
+Place = tuple[str, str, int]
+
+
+@dataclass(frozen=True)
+class _Item:
+    """One recording to be read. place: design, sample, and which of its recordings. folder, stem: where its analysis goes."""
+
+    place: Place
+    recording: StudyRecording
+    folder: Path
+    stem: str
+
+
+@dataclass(frozen=True)
+class _Read:
+    """What became of a recording. sha256: of its content, "" where it could not be read."""
+
+    values: RecordingValues
+    sha256: str = ""
+
+
+def collect(
+    study: Study, out: Path, jobs: int = 1, progress: Progress | None = None, overwrite: bool = False
+) -> StudyValues:
+    """Analyse the recordings of a study into `out`/recordings and read their values.
+
+    Only recordings are analysed whose content or settings (or benchlab's version) have changed. One that fails is listed among the
+    failures, and the rest goes on. A recording that is left out is analysed too, and does not count; that it cannot be is no failure.
+    progress: called with recordings done and in all. Raises UsageError for a folder that cannot be written to. After Ctrl-C, what is
+    finished is current the next time.
+    """
+    _check_folder(out)
+    items = list(_items(study, out / RECORDINGS))
+    target = Target.of(study.pressure_MPa, study.hold_tolerance_MPa)
+    work = functools.partial(_read, target=target, overwrite=overwrite)
+    read: dict[Place, _Read] = {}
+    for outcome in run_batch(items, work, jobs):
+        if outcome.result and outcome.result["partial"]:
+            raise KeyboardInterrupt
+        item, failed = outcome.item, outcome.error
+        read[item.place] = _failed(item.recording, failed, target) if failed else _done(item.recording, outcome.result)
+        if progress:
+            progress(len(read), len(items))
+    return _assembled(study, target, read)
+
+
+def analyze_settings(recording: StudyRecording) -> AnalyzeSettings:
+    """The settings that a study gives for a recording. Raises UsageError for values out of range or without meaning together."""
+    given = dict(recording.analysis)
+    onset = given.get("sync") == "onset"
+    if onset:
+        del given["sync"]
+    if not (given.get("pressure") or given.get("ramp")):
+        given.pop("sync", None)
+        onset = False
+    for name in ("roi_px", "reference_px"):
+        if name in given:
+            given[name] = tuple(given[name])
+    settings = AnalyzeSettings(**given, sync_onset=onset)
+    settings.check()
+    return settings
+
+
+def _check_folder(out: Path) -> None:
+    try:
+        out.mkdir(exist_ok=True)
+        (out / RECORDINGS).mkdir(exist_ok=True)
+    except FileNotFoundError:
+        raise UsageError("no such folder", file=out.parent, hint="make it, or choose another --out") from None
+    except OSError as error:
+        what = f"cannot be used as output folder: {reason_of(error)}"
+        raise UsageError(what, file=out, hint="choose another --out") from error
+    if not os.access(out / RECORDINGS, os.W_OK | os.X_OK):
+        raise UsageError("the output folder is read-only", file=out / RECORDINGS, hint="choose another --out")
+
+
+def _items(study: Study, folder: Path) -> Iterator[_Item]:
+    for design in study.designs:
+        for sample in design.samples:
+            used: set[str] = set()
+            for index, recording in enumerate(sample.recordings):
+                stem = recording.path.name if recording.path.is_dir() else recording.path.stem
+                if stem.casefold() in used:
+                    stem = f"{stem}_{index + 1}"
+                used.add(stem.casefold())
+                yield _Item((design.name, sample.name, index), recording, folder / design.name / sample.name, stem)
+
+
+def _read(item: _Item, target: Target, overwrite: bool) -> dict[str, Any]:
+    """One recording, in this process or in a worker: its status, readings and content."""
+    recording = item.recording
+    if recording.kind == "video":
+        item.folder.mkdir(parents=True, exist_ok=True)
+        outputs = Outputs(item.folder, item.stem, overwrite)
+        summary = analyze(recording.path, analyze_settings(recording), outputs)
+        content = (read_provenance(outputs.run_file) or {}).get("sha256", "")
+        return {
+            "status": summary["status"],
+            "partial": summary["status"] == "partial",
+            "readings": read_run(outputs.run_file, target),
+            "sha256": content,
+        }
+    check_regular_file(recording.path)
+    if recording.kind == "run":
+        readings = read_run(recording.path, target)
+    else:
+        design, sample, _ = item.place
+        readings = read_table(recording.path, design, sample, target)
+    return {"status": "read", "partial": False, "readings": readings, "sha256": sha256(recording.path)}
+
+
+def _done(recording: StudyRecording, result: dict[str, Any] | None) -> _Read:
+    assert result is not None
+    readings = result["readings"]
+    values = RecordingValues(
+        recording.file, result["status"], readings.cycles, readings.curve_deg, recording.left_out, readings.warnings
+    )
+    return _Read(values, result["sha256"])
+
+
+def _failed(recording: StudyRecording, error: BenchlabError, target: Target) -> _Read:
+    """A recording without values; its only cycle, number 0, says why."""
+    elsewhere = error.file if error.file and Path(error.file) != recording.path else None
+    line = type(error)(error.what, file=elsewhere, where=error.where, hint=error.hint)
+    none = np.full(len(target.curve_MPa), np.nan)
+    return _Read(
+        RecordingValues(recording.file, "failed", (CycleValue(0, math.nan, flag=str(line)),), none, recording.left_out)
+    )
+
+
+def _assembled(study: Study, target: Target, read: Mapping[Place, _Read]) -> StudyValues:
+    designs, failures = [], []
+    for design in study.designs:
+        samples = tuple(_sample(design, sample, read) for sample in design.samples)
+        simulated, missing = _simulated(design, study.pressure_MPa)
+        failures += missing
+        designs.append(DesignValues(design.name, design.shell, simulated, samples))
+    failures += [*_without_values(designs)]
+    inputs = {item.values.file: item.sha256 for item in read.values() if item.sha256}
+    return StudyValues(
+        title=study.title,
+        notes=study.notes,
+        pressure_MPa=study.pressure_MPa,
+        hold_tolerance_MPa=study.hold_tolerance_MPa,
+        curve_MPa=target.curve_MPa,
+        designs=tuple(designs),
+        sets=study.sets,
+        failures=tuple(failures),
+        left_out=tuple(_left_out(designs)),
+        warnings=(*_warnings(designs), *_twice(read)),
+        inputs=inputs,
+    )
+
+
+def _sample(design: StudyDesign, sample: StudySample, read: Mapping[Place, _Read]) -> SampleValues:
+    recordings = tuple(read[design.name, sample.name, index].values for index in range(len(sample.recordings)))
+    return SampleValues(sample.name, recordings, sample.left_out)
+
+
+def _simulated(design: StudyDesign, pressure_MPa: float) -> tuple[Simulated | None, list[Missing]]:
+    try:
+        found = simulated_of(design, pressure_MPa)
+    except BenchlabError as error:
+        return None, [Missing(f"no simulated angle: {error}", design.name)]
+    if found is not None and not math.isfinite(found.angle_deg):
+        ends = (
+            f"{found.pressure_MPa.min():g} to {found.pressure_MPa.max():g} MPa"
+            if len(found.pressure_MPa)
+            else "nothing"
+        )
+        return found, [Missing(f"no simulated angle at {pressure_MPa:g} MPa: simulated is {ends}", design.name)]
+    return found, []
+
+
+def _without_values(designs: list[DesignValues]) -> Iterator[Missing]:
+    """Cycles, recordings, samples and designs that should have a value and have none."""
+    for design in designs:
+        for sample in design.samples:
+            if sample.left_out:
+                continue
+            if not sample.recordings:
+                yield Missing("the sample has no recording", design.name, sample.name)
+            for recording in sample.recordings:
+                if recording.left_out:
+                    continue
+                several = len(recording.cycles) > 1
+                for cycle in recording.cycles:
+                    if not cycle.known:
+                        number = cycle.cycle if several else None
+                        yield Missing(cycle.flag, design.name, sample.name, recording.file, number)
+        if not design.counted:
+            yield Missing("no sample of the design has a value", design.name)
+
+
+def _left_out(designs: list[DesignValues]) -> Iterator[Missing]:
+    for design in designs:
+        for sample in design.samples:
+            if sample.left_out:
+                yield Missing(sample.left_out, design.name, sample.name)
+            for recording in sample.recordings:
+                if recording.left_out:
+                    yield Missing(recording.left_out, design.name, sample.name, recording.file)
+
+
+def _warnings(designs: list[DesignValues]) -> Iterator[Missing]:
+    """What is doubtful about recordings that count, and about the frames that a value is from."""
+    for design in designs:
+        for sample in design.samples:
+            for recording in () if sample.left_out else sample.recordings:
+                for warning in () if recording.left_out else recording.warnings:
+                    yield Missing(warning, design.name, sample.name, recording.file)
+                for cycle in () if recording.left_out else recording.cycles:
+                    if cycle.known and cycle.flag:
+                        why = f"its angle is from doubtful frames: {cycle.flag}"
+                        yield Missing(why, design.name, sample.name, recording.file, cycle.cycle)
+
+
+def _twice(read: Mapping[Place, _Read]) -> Iterator[Missing]:
+    """Recordings with the same content as another: copies are no repetition."""
+    same: dict[str, list[Place]] = defaultdict(list)
+    for place, item in read.items():
+        if item.sha256:
+            same[item.sha256].append(place)
+    for places in same.values():
+        for design, sample, index in sorted(places[1:]):
+            first = read[places[0]].values.file
+            why = f"has the same content as {first} of {places[0][0]} {places[0][1]}"
+            yield Missing(why, design, sample, read[design, sample, index].values.file)
