@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from benchlab.errors import BenchlabError
 from benchlab.io.published import PublishedAngle
 from benchlab.io.study_values import StudySet, StudyValues
-from benchlab.report.study_report import ComparedSet, PublishedSet, SAME_PRESSURE_MPa, StudyReport
+from benchlab.report.study.report import ComparedSet, PublishedSet, SAME_PRESSURE_MPa, StudyReport
 from benchlab.stats.comparison import Comparison, compare, compare_summaries
 from benchlab.stats.measurements import measurements_of
 from benchlab.workflows.provenance import made_by

@@ -18,7 +18,7 @@ from benchlab.io.study_values import (
     StudySet,
     StudyValues,
 )
-from benchlab.report.study_report import StudyReport
+from benchlab.report.study.report import StudyReport
 from benchlab.workflows.report import report_of
 
 PAPER = (("tw3_slw5", 3, 5, 119.5, 110.2, 1.9), ("tw3_slw10", 3, 10, 130.2, 125.7, 4.0), ("tw3_slw20", 3, 20, 62.4, 60.3, 3.6),

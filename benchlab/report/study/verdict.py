@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from benchlab.report.document import Section, Words, cut
 from benchlab.report.rounding import number
-from benchlab.report.study_report import ComparedSet, StudyReport, error_of
+from benchlab.report.study.report import ComparedSet, StudyReport, error_of
 from benchlab.stats.comparison import Comparison
 from benchlab.stats.pairs import Pair
 from benchlab.stats.wording import p_equals, verdict

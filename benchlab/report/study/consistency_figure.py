@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from benchlab.report.document import cut_apart
 from benchlab.report.panels import BLUE, GREY, dress
-from benchlab.report.study_figures import HALF_IN, OTHER, TEXT, new_panel
+from benchlab.report.study.figures import HALF_IN, OTHER, TEXT, new_panel
 from benchlab.report.wording import drawable
 from benchlab.stats.consistency import Cell
 

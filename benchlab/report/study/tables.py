@@ -7,7 +7,7 @@ from typing import Any
 from benchlab.io.study_values import DesignValues, SampleValues
 from benchlab.report.document import Cell, Column, Table, cut
 from benchlab.report.rounding import NONE, count, number, words
-from benchlab.report.study_report import StudyReport, error_of, mean_of, sd_of, simulated_of
+from benchlab.report.study.report import StudyReport, error_of, mean_of, sd_of, simulated_of
 from benchlab.stats.comparison_json import mean_interval
 
 

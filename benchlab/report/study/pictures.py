@@ -8,9 +8,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from benchlab.io.study_values import DesignValues
-from benchlab.report.consistency_figure import MOST_CELLS, draw_consistency
 from benchlab.report.document import Block, Panel, Pictures, Words, cut
-from benchlab.report.study_figures import (
+from benchlab.report.study.consistency_figure import MOST_CELLS, draw_consistency
+from benchlab.report.study.figures import (
     MOST_BRACKETED,
     MOST_ROWS,
     AngleBand,
@@ -20,9 +20,9 @@ from benchlab.report.study_figures import (
     draw_bars,
     draw_intervals,
 )
-from benchlab.report.study_report import ComparedSet, StudyReport, mean_of, sd_of, simulated_of
-from benchlab.report.study_statistics import found_sets
-from benchlab.report.study_verdict import name_of
+from benchlab.report.study.report import ComparedSet, StudyReport, mean_of, sd_of, simulated_of
+from benchlab.report.study.statistics import found_sets
+from benchlab.report.study.verdict import name_of
 from benchlab.report.svg import svg_of
 from benchlab.stats.comparison import Comparison
 from benchlab.stats.pairs import Pair

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from benchlab.report.brackets import Bracket, stack_brackets
 from benchlab.report.document import cut_apart
 from benchlab.report.figures import DPI, figure_class
 from benchlab.report.panels import BAND, BLUE, GREY, dress
+from benchlab.report.study.brackets import Bracket, stack_brackets
 from benchlab.report.wording import drawable
 from benchlab.units import FloatArray
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from benchlab.report.document import Block, Cell, Column, Document, Items, Section, Table, Words, cut
 from benchlab.report.rounding import words
-from benchlab.report.study_pictures import bands_blocks, bars_blocks, consistency_blocks, intervals_blocks
-from benchlab.report.study_published import published_section
-from benchlab.report.study_report import StudyReport
-from benchlab.report.study_statistics import (
+from benchlab.report.study.pictures import bands_blocks, bars_blocks, consistency_blocks, intervals_blocks
+from benchlab.report.study.published import published_section
+from benchlab.report.study.report import StudyReport
+from benchlab.report.study.statistics import (
     assumptions_table,
     components_blocks,
     consistency_table,
@@ -18,8 +18,8 @@ from benchlab.report.study_statistics import (
     tests_table,
     warnings_of,
 )
-from benchlab.report.study_tables import designs_table, samples_table
-from benchlab.report.study_verdict import verdict_section
+from benchlab.report.study.tables import designs_table, samples_table
+from benchlab.report.study.verdict import verdict_section
 
 MOST_LISTED = 100
 

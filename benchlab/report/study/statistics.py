@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from benchlab.report.document import Block, Cell, Column, Table, Words, cut
 from benchlab.report.rounding import NONE, count, digits, number, words
-from benchlab.report.study_report import ComparedSet, StudyReport
-from benchlab.report.study_verdict import joined, name_of
+from benchlab.report.study.report import ComparedSet, StudyReport
+from benchlab.report.study.verdict import joined, name_of
 from benchlab.stats.comparison import Comparison
 from benchlab.stats.components import Component
 from benchlab.stats.pairs import Pair

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 from benchlab.report.document import Block, Column, Section, Table, Words
 from benchlab.report.rounding import number, words
-from benchlab.report.study_report import PublishedSet, StudyReport
-from benchlab.report.study_statistics import probability
-from benchlab.report.study_verdict import pair_name
+from benchlab.report.study.report import PublishedSet, StudyReport
+from benchlab.report.study.statistics import probability
+from benchlab.report.study.verdict import pair_name
 from benchlab.stats.wording import STARS_LEGEND, p_equals, stars, verdict
 
 

@@ -1,0 +1,1 @@
+"""The repeatability report: what stands in it, in which words, tables and pictures."""
