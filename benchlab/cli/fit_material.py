@@ -29,6 +29,8 @@ LAWS = ("all", "neo-hooke", "mooney-rivlin", "yeoh", "polynomial-2", "ogden-1", 
 @click.option(
     "--columns", metavar="NAMES", help="What the columns are, as `force_N,extension_mm`; `-` for one not used."
 )
+@click.option("--decimal", type=click.Choice([".", ","]), help="Sign of decimals, where the file leaves it open.")
+@click.option("--encoding", metavar="NAME", help="Of the files, where they leave it open, as `cp1250`.")
 @click.option(
     "--stress",
     type=click.Choice(["nominal", "true"]),
@@ -75,6 +77,8 @@ def fit_material(
         options["keep_slack"],
         options["max_stretch"],
         options["film_thickness_mm"],
+        options["decimal"],
+        options["encoding"],
     )
     found = fit(tests, out, settings, overwrite)
     _tell(found)

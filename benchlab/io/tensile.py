@@ -14,12 +14,15 @@ from pathlib import Path
 import numpy as np
 
 from benchlab.errors import InputError, UsageError, printable
-from benchlab.io.export_table import ExportTable, read_export, ungrouped
-from benchlab.io.numbers import NumberReader
+from benchlab.io.export_columns import NO_NAMES
+from benchlab.io.export_table import Export, ExportTable, read_export
 from benchlab.units import FloatArray, known_unit, parse_column, to_mm, to_MPa, to_N
 
 RATIOS = {"%": 0.01, "mm/mm": 1.0, "m/m": 1.0, "in/in": 1.0, "": 1.0}
 """Factor of each unit of strain."""
+
+MIN_ROWS = 5
+"""Fewest rows of numbers that are read as a test."""
 
 _STRESSES = {"n/mm^2": "MPa", "n/mm²": "MPa", "n/mm2": "MPa"}
 _TO_STRAIN, _TO_STRESS = ("stretch", "strain", "extension"), ("stress", "force")
@@ -60,21 +63,27 @@ class _Column:
 
 
 def read_tensile(
-    path: Path, size: SpecimenSize | None = None, columns: str | None = None, true_stress: bool = False
+    path: Path,
+    size: SpecimenSize | None = None,
+    columns: str | None = None,
+    true_stress: bool = False,
+    decimal: str | None = None,
+    encoding: str | None = None,
 ) -> TensileTest:
     """Read one test. columns: names by place with commas between, as `force_N,extension_mm`; `-` for one that is not used.
 
-    true_stress: stresses (and strains that say so) are true ones; they are turned into nominal stress and stretch.
+    decimal, encoding: see `read_export`. true_stress: stresses (and strains that say so) are true ones; they are turned into nominal stress and stretch.
     Raises UsageError where an option is missing or wrong, InputError for a file that is no tensile test.
     """
     size = size or SpecimenSize()
-    table = read_export(path)
-    notes = list(table.notes)
+    export = read_export(path, encoding, decimal)
+    notes = list(export.notes)
+    table = _only_table(export, notes)
     found = _named(table, columns) if columns else _recognised(table)
     x = _chosen(path, found, _TO_STRAIN, true_stress, given=size.gauge_mm is not None)
     y = _chosen(path, found, _TO_STRESS, true_stress, given=None not in (size.thickness_mm, size.width_mm))
     needed = ("gauge_mm",) * (x.quantity == "extension") + ("thickness_mm", "width_mm") * (y.quantity == "force")
-    size = _size(table, size, needed, notes)
+    size = _size(export, size, needed, notes)
     values_x, values_y = _numbers(table, x, y, notes)
     stretch = _stretch(path, x, values_x, size)
     stress = _stress(path, y, values_y, size)
@@ -86,6 +95,21 @@ def read_tensile(
     else:
         notes.append(f"{x.label!r} against {y.label!r} over {size.thickness_mm:g} x {size.width_mm:g} mm")
     return TensileTest(path, stretch, stress, size, tuple(notes))
+
+
+def _only_table(export: Export, notes: list[str]) -> ExportTable:
+    """The one table of the test; much smaller ones, as results, are left out. Raises InputError for several, or for few rows."""
+    path, table = export.path, max(export.tables, key=lambda t: len(t.lines))
+    large = [t for t in export.tables if len(t.lines) * 5 > len(table.lines)]
+    if len(large) > 1:
+        at = ", ".join(str(t.lines[0]) for t in large)
+        hint = "save each specimen as a file of its own, and give them all"
+        raise InputError(f"{len(large)} tables of numbers (from lines {at})", file=path, hint=hint)
+    if len(table.lines) < MIN_ROWS:
+        what = f"{len(table.lines)} rows of numbers, a test has at least {MIN_ROWS}"
+        raise InputError(what, file=path, where=f"line {table.lines[0]}")
+    notes += [f"the small table of numbers in line {t.lines[0]} was left out" for t in export.tables if t is not table]
+    return table
 
 
 def _quantity(name: str, unit: str | None) -> tuple[str, str] | None:
@@ -108,14 +132,12 @@ def _quantity(name: str, unit: str | None) -> tuple[str, str] | None:
 def _recognised(table: ExportTable) -> list[_Column]:
     """Columns by what their header says. Raises InputError for a flexure or compression test, UsageError for no header."""
     hint = "say what the columns are, as --columns force_N,extension_mm (or stretch, strain, strain_%, stress_MPa; - for others)"
-    if not table.names and not table.units:
-        width = len(table.rows[0][1])
-        raise UsageError(f"{width} columns without names or units", file=table.path, hint=hint)
+    if not table.has_header:
+        raise UsageError(f"{table.width} {NO_NAMES}", file=table.path, hint=hint)
     found = []
-    for index in range(len(table.rows[0][1])):
-        name = table.names[index] if table.names else ""
+    for index, name in enumerate(table.names):
         inline = _parsed(name)
-        unit = table.units[index] if table.units and table.units[index] else inline[1]
+        unit = table.units[index] or inline[1]
         if re.search(r"flex|bend|compress", name.lower()):
             hint = "a law is fitted to tensile tests; name the columns with --columns if this is one"
             raise InputError(f"column {printable(name)!r}: not a tensile test", file=table.path, hint=hint)
@@ -125,9 +147,7 @@ def _recognised(table: ExportTable) -> list[_Column]:
             )
             found.append(_Column(index, *what, label, "true" in name.lower()))
     if not any(c.quantity in _TO_STRAIN for c in found) or not any(c.quantity in _TO_STRESS for c in found):
-        seen = printable(
-            ", ".join(f"{n} {u}".strip() for n, u in zip(table.names, table.units or [""] * len(table.names)))
-        )
+        seen = printable(", ".join(f"{n} {u}".strip() for n, u in zip(table.names, table.units)))
         wanted = f"no columns of stretch, strain or extension with stress or force and their units: it has {seen}"
         raise UsageError(wanted, file=table.path, hint=hint)
     return found
@@ -136,8 +156,7 @@ def _recognised(table: ExportTable) -> list[_Column]:
 def _named(table: ExportTable, columns: str) -> list[_Column]:
     """Columns by the words of --columns."""
     words = [word.strip() for word in columns.split(",")]
-    width = len(table.rows[0][1])
-    if len(words) != width:
+    if len(words) != (width := table.width):
         hint = "name each one, with - for those that are not used"
         raise UsageError(f"--columns names {len(words)} columns, the table has {width}", file=table.path, hint=hint)
     found = []
@@ -181,21 +200,20 @@ def _chosen(path: Path, found: Sequence[_Column], wanted: tuple[str, ...], true:
 
 def _numbers(table: ExportTable, x: _Column, y: _Column, notes: list[str]) -> tuple[FloatArray, FloatArray]:
     """The values of two columns; rows in which one of them is empty are left out and counted."""
-    reader = NumberReader(table.path, table.separator)
-    pairs = np.array(
-        [[reader.read(ungrouped(cells[c.index], table.separator), line) for c in (x, y)] for line, cells in table.rows]
-    )
-    if reader.unreadable:
-        line, text = reader.unreadable[0]
-        hint = f"{len(reader.unreadable)} such cells; remove these rows"
-        raise InputError(f"{text!r} is not a number", file=table.path, where=f"line {line}", hint=hint)
-    if reader.commas_may_be_thousands:
-        hint = "write 1.234 or 1234, or more decimals"
-        raise InputError("commas that may mark decimals or thousands", file=table.path, hint=hint)
-    whole = np.isfinite(pairs).all(axis=1)
+    values = []
+    for chosen in (x, y):
+        column, said = table.column(chosen.index, chosen.label)
+        notes += said
+        if column.unreadable:
+            row, text = column.unreadable[0]
+            hint = f"{len(column.unreadable)} such cells; remove these rows"
+            where = f"line {table.lines[row]}"
+            raise InputError(f"{printable(text)!r} is not a number", file=table.path, where=where, hint=hint)
+        values.append(column.values)
+    whole = np.isfinite(values).all(axis=0)
     if not whole.all():
         notes.append(f"{int((~whole).sum())} rows with an empty cell are left out")
-    return pairs[whole, 0], pairs[whole, 1]
+    return values[0][whole], values[1][whole]
 
 
 def _stretch(path: Path, x: _Column, values: FloatArray, size: SpecimenSize) -> FloatArray:
@@ -219,13 +237,13 @@ def _stress(path: Path, y: _Column, values: FloatArray, size: SpecimenSize) -> F
     return to_N(values, y.unit) / (size.thickness_mm * size.width_mm)
 
 
-def _size(table: ExportTable, size: SpecimenSize, needed: tuple[str, ...], notes: list[str]) -> SpecimenSize:
+def _size(export: Export, size: SpecimenSize, needed: tuple[str, ...], notes: list[str]) -> SpecimenSize:
     """The size from the options, and what of it is needed and left open from the preamble."""
     patterns = {"thickness_mm": r"thickness$", "width_mm": r"width$", "gauge_mm": r"(gauge|specimen) length$|^length$"}
     taken: dict[str, float] = {}
     for key in needed:
         if getattr(size, key) is None:
-            values = {value for name, value in _lengths(table) if re.search(patterns[key], name)}
+            values = {value for name, value in _lengths(export) if re.search(patterns[key], name)}
             if len(values) == 1 and (value := values.pop()) > 0:
                 taken[key] = value
     if taken:
@@ -234,9 +252,9 @@ def _size(table: ExportTable, size: SpecimenSize, needed: tuple[str, ...], notes
     return replace(size, **taken)
 
 
-def _lengths(table: ExportTable) -> Iterator[tuple[str, float]]:
+def _lengths(export: Export) -> Iterator[tuple[str, float]]:
     """(name in lower case, mm) of every length in the preamble."""
-    for _, cells in table.preamble:
+    for _, cells in export.preamble:
         name, unit = parse_column(cells[0])
         unit = unit or (cells[2].strip("() ") if len(cells) > 2 else "")
         if len(cells) > 1 and re.fullmatch(r"\d+([.,]\d+)?", cells[1]) and (known_unit(unit) or ("",))[0] == "length":

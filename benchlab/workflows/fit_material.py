@@ -36,6 +36,8 @@ class FitSettings:
     keep_slack: bool = False
     max_stretch: float | None = None
     film_thickness_mm: float | None = None
+    decimal: str | None = None
+    encoding: str | None = None
 
     def __post_init__(self) -> None:
         if self.max_stretch is not None and not (math.isfinite(self.max_stretch) and self.max_stretch > 1.01):
@@ -98,7 +100,9 @@ def _check_outputs(paths: Sequence[Path], sources: Sequence[Path], overwrite: bo
 
 
 def _read(path: Path, settings: FitSettings) -> _Test:
-    test = read_tensile(path, settings.size, settings.columns, settings.true_stress)
+    test = read_tensile(
+        path, settings.size, settings.columns, settings.true_stress, settings.decimal, settings.encoding
+    )
     try:
         curve = loading_curve(test.stretch, test.stress_MPa, not settings.keep_slack, settings.max_stretch)
         specimen = thinned(curve.stretch, curve.stress_MPa)
