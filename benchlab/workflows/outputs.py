@@ -89,8 +89,8 @@ class Outputs:
             if (
                 path.exists()
                 and not self.overwrite
-                and ours.get(path.name) != "any"
-                and ours.get(path.name) != sha256(path)
+                and (told := ours.get(path.relative_to(self.folder).as_posix())) != "any"
+                and told != sha256(path)
             ):
                 raise UsageError(
                     "exists, and no run file beside it says that benchlab wrote it so",
@@ -99,7 +99,7 @@ class Outputs:
                 )
 
     def _written_before(self) -> dict[str, str]:
-        """Names of the files of an earlier run here, with their SHA-256; the run file itself needs none."""
+        """Names of the files of an earlier run, as from its folder, with their SHA-256; the run file itself needs none."""
         provenance = read_provenance(self.run_file)
         return {} if provenance is None else {self.run_file.name: "any", **provenance.get("outputs_sha256", {})}
 
@@ -129,11 +129,12 @@ class Outputs:
                 stage = replace(self, folder=Path(hidden))
                 before = self._written_before()
                 yield stage
-                made = sorted(Path(hidden).iterdir(), key=lambda p: p == stage.run_file)
-                for path in made:
-                    path.replace(self.folder / path.name)
+                made = {p.relative_to(hidden).as_posix(): p for p in Path(hidden).rglob("*") if p.is_file()}
+                for name, path in sorted(made.items(), key=lambda item: item[1] == stage.run_file):
+                    (self.folder / name).parent.mkdir(exist_ok=True)
+                    path.replace(self.folder / name)
                 # A result of the run before that this one did not make would tell another story.
-                for name in before.keys() - {path.name for path in made}:
+                for name in before.keys() - made.keys():
                     stale = self.folder / name
                     if stale.is_file() and sha256(stale) == before[name]:
                         stale.unlink()
