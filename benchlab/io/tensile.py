@@ -72,7 +72,8 @@ def read_tensile(
 ) -> TensileTest:
     """Read one test. columns: names by place with commas between, as `force_N,extension_mm`; `-` for one that is not used.
 
-    decimal, encoding: see `read_export`. true_stress: stresses (and strains that say so) are true ones; they are turned into nominal stress and stretch.
+    true_stress: stresses (and strains that say so) are true ones; they are turned into nominal stress and stretch.
+    decimal, encoding: see `read_export`.
     Raises UsageError where an option is missing or wrong, InputError for a file that is no tensile test.
     """
     size = size or SpecimenSize()
