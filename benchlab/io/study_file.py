@@ -5,40 +5,30 @@ Paths in the file are relative to it. `analysis:` may stand with the study, a de
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from benchlab.actuator import ShellDesign
 from benchlab.errors import BenchlabError, InputError
 from benchlab.io.design_file import read_design
-from benchlab.io.study_schema import (
-    AnalysisDocument,
-    DesignDocument,
+from benchlab.io.study_analysis import AnalysisDocument, merged
+from benchlab.io.study_parts import (
     ForceDocument,
     ForceSettings,
+    Kind,
     RecordingDocument,
     SampleDocument,
     ShellDocument,
     SimulatedDocument,
-    StudyDocument,
+    kind_of,
 )
+from benchlab.io.study_schema import DesignDocument, StudyDocument
 from benchlab.io.study_values import ALL_DESIGNS, StudySet
-from benchlab.io.yaml_file import read_document, write_document
+from benchlab.io.yaml_file import read_document
 
 HOLD_TOLERANCE = 0.01
 """Share of the study's pressure within which it counts as held, where the study does not say."""
-
-RUN_SUFFIXES = frozenset([".h5", ".hdf5", ".hdf", ".nxs"])
-TABLE_SUFFIXES = frozenset([".csv", ".tsv", ".txt"])
-
-_EXCLUSIVE = (
-    frozenset({"pressure", "ramp"}),
-    frozenset({"scale_mm_per_px", "reference_mm", "reference_px", "marker_span_mm", "aruco_mm"}),
-)
-
-Kind = Literal["video", "run", "table"]
 
 
 @dataclass(frozen=True)
@@ -127,25 +117,6 @@ def read_study(path: Path) -> Study:
     return Study(path, document.title, document.notes, document.pressure_MPa, tolerance, designs, tuple(sets))
 
 
-def write_study(path: Path, document: dict[str, Any], header_comment: str) -> None:
-    """Write the data of a study file with a comment before it, whole or not at all.
-
-    Raises InputError where the disk refuses, ValueError for data that are no study.
-    """
-    StudyDocument.model_validate_json(json.dumps(document))
-    write_document(path, document, header_comment)
-
-
-def kind_of(path: Path) -> Kind:
-    """What a recording is, by its suffix: a run file, a table, or else a video or a folder of stills.
-
-    >>> kind_of(Path("a.MP4")), kind_of(Path("a.h5")), kind_of(Path("a.csv"))
-    ('video', 'run', 'table')
-    """
-    suffix = path.suffix.lower()
-    return "run" if suffix in RUN_SUFFIXES else "table" if suffix in TABLE_SUFFIXES else "video"
-
-
 def _design(path: Path, name: str, item: DesignDocument, above: AnalysisDocument) -> StudyDesign:
     levels = [above, item.analysis]
     shell = _shell(path, name, item.shell)
@@ -170,8 +141,8 @@ def _shell(path: Path, name: str, item: ShellDocument | None) -> ShellDesign | N
     try:
         return read_design(at if at.exists() else item.named)
     except BenchlabError as error:
-        what = f"shell {item.named!r} of {name}: {error.what}"
-        raise InputError(what, file=path, where=error.where, hint=error.hint) from None
+        what = ", ".join(part for part in (item.named, error.where) if part) + f": {error.what}"
+        raise InputError(what, file=path, where=f"designs.{name}.shell", hint=error.hint) from None
 
 
 def _sample(
@@ -184,25 +155,13 @@ def _sample(
 def _recording(
     folder: Path, item: RecordingDocument, levels: list[AnalysisDocument], shell: ShellDesign | None
 ) -> StudyRecording:
-    settings = _merged([*levels, item.analysis])
+    settings = merged([*levels, item.analysis])
     if shell is not None:
         settings.setdefault("length_mm", shell.length_mm)
     for name in ("lens", "pressure"):
         if name in settings:
             settings[name] = str(folder / settings[name])
     return StudyRecording(item.file, folder / item.file, kind_of(Path(item.file)), settings, item.left_out)
-
-
-def _merged(levels: list[AnalysisDocument]) -> dict[str, Any]:
-    """The settings of all levels, the last one winning: a pressure replaces a ramp, one kind of scale another, null removes."""
-    settings: dict[str, Any] = {}
-    for level in levels:
-        given = level.model_dump(exclude_unset=True)
-        for group in _EXCLUSIVE:
-            if any(given.get(name) is not None for name in group):
-                settings = {name: value for name, value in settings.items() if name not in group}
-        settings |= given
-    return {name: value for name, value in settings.items() if value is not None}
 
 
 def _force(folder: Path, item: ForceDocument | None) -> tuple[StudyForceFile, ...]:
@@ -218,5 +177,5 @@ def _force(folder: Path, item: ForceDocument | None) -> tuple[StudyForceFile, ..
         if "pressure" in settings:
             settings["pressure"] = folder / settings["pressure"]
         path = folder / each.file
-        found.append(StudyForceFile(each.file, path, each.actuator or path.stem, settings, each.left_out))
+        found.append(StudyForceFile(each.file, path, each.actuator_name, settings, each.left_out))
     return tuple(found)

@@ -5,21 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from benchlab.errors import UsageError
-
-RANGES = {
-    "length_mm": (1e-3, 1e6),
-    "reference_mm": (1e-3, 1e6),
-    "marker_span_mm": (1e-3, 1e6),
-    "aruco_mm": (1e-3, 1e6),
-    "scale_mm_per_px": (1e-6, 1e3),
-    "fps": (1e-3, 1e6),
-    "capture_fps": (1e-3, 1e6),
-    "threshold": (129, 254),
-    "markers": (3, 60),
-    "max_missing": (0, 1),
-    "max_pixels": (1, 10**10),
-}
-SCALES = ("scale_mm_per_px", "reference_mm", "marker_span_mm", "aruco_mm")
+from benchlab.io.analysis_ranges import RANGES, SCALES
 
 
 @dataclass(frozen=True)
