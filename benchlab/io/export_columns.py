@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from benchlab.errors import UsageError, printable
@@ -25,12 +25,14 @@ _PHYSICAL = {"time": "time", "extension": "length", "force": "force", "pressure"
 _OTHER_UNITS = re.compile(
     r"%|-|°c?|[vajw]|[a-zµ]+/[a-zµ]+(\^?[23]|[²³])?|(mm|cm|m|in)(\^?[23]|[²³])|n·?m|hz|count|ratio", re.IGNORECASE
 )
-_DERIVED = re.compile(r"(corrected|true|tensile|compressive|flexure|axial)\b", re.IGNORECASE)
+_ASSUMED = {"time": "s", "extension": "mm"}
+_DERIVED = re.compile(r"(corrected|true|tensile|compressive|flexure|axial|(cycle )?elapsed)\b", re.IGNORECASE)
 """Where a file has a column of a plain name, as Displacement, those that are derived from it are called so."""
 
+_BRACKETS = re.compile(r"(?<=\w)\s*\(.*\)$")
 _WORDS = {word: quantity for quantity, words in COLUMN_WORDS.items() for word in words}
 NO_NAMES = "columns without names or units"
-_REMEDY = "name the columns by place, as --columns time_s,extension_mm,force_N with - for those that are not used"
+REMEDY = "name the columns by place, as --columns time_s,extension_mm,force_N with - for those that are not used"
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,7 @@ class Chosen:
     unit: str
     label: str
     assumed: bool = False
+    """Whether the unit is not from the file."""
 
 
 def split_name(name: str, unit: str = "") -> tuple[str, str]:
@@ -62,7 +65,7 @@ def quantity_named(name: str) -> str | None:
     >>> quantity_named("Load 1"), quantity_named("Obciążenie"), quantity_named("Maximum Force")
     ('force', 'force', None)
     """
-    low = re.sub(r"[\s_]+", " ", name).strip(" :.").lower()
+    low = re.sub(r"[\s_]+", " ", _BRACKETS.sub("", name)).strip(" :.").lower()
     return _WORDS.get(low) or _WORDS.get(re.sub(r"\s*(ch\s*)?\d+$", "", low))
 
 
@@ -97,19 +100,20 @@ def find_columns(
             quantity, known, by_name = found
             column = Chosen(index, quantity, known, f"{name} ({unit})" if unit else name)
             (named if by_name else measured).setdefault(quantity, []).append(column)
+    if "force" not in named | measured:
+        raise UsageError(_no_force(names, units), file=path, where=where, hint=REMEDY)
     chosen = []
-    for quantity in named | measured:
+    for quantity in sorted(named | measured, key="force".__ne__):
         columns = named.get(quantity) or measured[quantity]
+        if quantity == "extension" and quantity not in named and len(columns) > 1:
+            continue
         columns = [c for c in columns if not _DERIVED.match(c.label)] or columns
         if len(columns) > 1:
             listed = " and ".join(repr(printable(c.label)) for c in columns)
             what = f"{len(columns)} columns that could be the {quantity}: {listed}"
-            raise UsageError(what, file=path, where=where, hint=_REMEDY)
+            raise UsageError(what, file=path, where=where, hint=REMEDY)
         chosen.append(_with_unit(path, where, columns[0], force_unit))
-    if not any(c.quantity == "force" for c in chosen):
-        seen = ", ".join(repr(printable(split_name(n, u)[0])) for n, u in zip(names, units) if n or u) or "no names"
-        raise UsageError(f"no column of force among {seen}", file=path, where=where, hint=_REMEDY)
-    return tuple(sorted(chosen, key=lambda c: list(KEYS).index(c.quantity)))
+    return tuple(sorted(chosen, key=lambda c: list(COLUMN_WORDS).index(c.quantity)))
 
 
 def _meaning(name: str, unit: str) -> tuple[str, str, bool] | None:
@@ -121,10 +125,20 @@ def _meaning(name: str, unit: str) -> tuple[str, str, bool] | None:
         by_unit = {"force": "force", "length": "extension"}.get(known[0]) if known else None
         return (by_unit, known[1], False) if known and by_unit else None
     if quantity not in _PHYSICAL:
-        return None if unit else (quantity, "", True)
+        return None if known else (quantity, "", True)
     if not unit:
         return quantity, "", True
     return (quantity, known[1], True) if known and known[0] == _PHYSICAL[quantity] else None
+
+
+def _no_force(names: Sequence[str], units: Sequence[str]) -> str:
+    """Why no column holds a force."""
+    parsed = [split_name(n, u) for n, u in zip(names, units)]
+    for name, unit in parsed:
+        if quantity_named(name) == "force":
+            return f"unit {printable(unit)!r} of {printable(name)!r} is not one of force ({', '.join(UNITS['force'])})"
+    seen = ", ".join(repr(printable(name)) for name, unit in parsed if name or unit)
+    return f"no column of force among {seen or 'no names'}"
 
 
 def columns_by_place(path: Path, words: str, width: int, empty: Sequence[bool]) -> tuple[Chosen, ...]:
@@ -149,7 +163,7 @@ def columns_by_place(path: Path, words: str, width: int, empty: Sequence[bool]) 
         chosen.append(Chosen(index, quantity, known[1] if known else "", word))
     if not any(c.quantity == "force" for c in chosen):
         raise UsageError("--columns names no force", hint="name one, as force_N")
-    return tuple(sorted(chosen, key=lambda c: list(KEYS).index(c.quantity)))
+    return tuple(sorted(chosen, key=lambda c: list(COLUMN_WORDS).index(c.quantity)))
 
 
 def is_raw_data(names: Sequence[str], units: Sequence[str]) -> bool:
@@ -160,21 +174,15 @@ def is_raw_data(names: Sequence[str], units: Sequence[str]) -> bool:
 
 
 def _with_unit(path: Path, where: str | None, column: Chosen, force_unit: str | None) -> Chosen:
-    """The column with a unit. For a force without one it has to be given; then times are s and lengths mm."""
+    """The column with a unit. A force or pressure must have one; times without are taken to be in s, lengths in mm."""
     if column.quantity not in _PHYSICAL or column.unit:
         return column
-    if column.quantity == "pressure":
-        raise UsageError(f"no unit of {printable(column.label)!r}", file=path, where=where, hint=_REMEDY)
-    if column.quantity == "force" or force_unit is None:
-        if force_unit is None:
-            hint = f"give --force-unit ({', '.join(UNITS['force'])}), or {_REMEDY}"
-            raise UsageError(f"no unit of {printable(column.label)!r}", file=path, where=where, hint=hint)
-        known = known_unit(force_unit)
-        if known is None or known[0] != "force":
-            raise UsageError(
-                f"--force-unit: {printable(force_unit)!r} is none", hint=f"use one of {', '.join(UNITS['force'])}"
-            )
-        return Chosen(column.index, "force", known[1], column.label)
-    return Chosen(
-        column.index, column.quantity, {"time": "s", "extension": "mm"}[column.quantity], column.label, assumed=True
-    )
+    if column.quantity == "pressure" or (column.quantity == "force" and force_unit is None):
+        hint = f"give --force-unit ({', '.join(UNITS['force'])}), or {REMEDY}" if column.quantity == "force" else REMEDY
+        raise UsageError(f"no unit of {printable(column.label)!r}", file=path, where=where, hint=hint)
+    unit = force_unit if column.quantity == "force" else _ASSUMED[column.quantity]
+    known = known_unit(unit or "")
+    if known is None or known[0] != _PHYSICAL[column.quantity]:
+        hint = f"use one of {', '.join(UNITS['force'])}"
+        raise UsageError(f"--force-unit: {printable(force_unit)!r} is none", hint=hint)
+    return replace(column, unit=known[1], assumed=True)

@@ -43,7 +43,7 @@ class PlainTable:
 
     before: tuple[Row, ...]
     span: Span
-    header_line: int | None
+    header: tuple[int, ...]
     signs: Signs
     columns: tuple[Column, ...]
     lines: range
@@ -71,9 +71,9 @@ def read_plain(text: ExportText, stated: str | None = None) -> PlainTable | None
     except (NotPlainError, InputError):
         return None
     lines = range(first[0], first[0] + len(columns[0].values))
-    header_line = rows[span.top][0] if span.has_header else None
+    header = tuple(line for line, _ in rows[span.top : span.first])
     cut = lines.stop if is_last_cut else None
-    return PlainTable(tuple(rows[: span.top]), span, header_line, signs, columns, lines, cut)
+    return PlainTable(tuple(rows[: span.top]), span, header, signs, columns, lines, cut)
 
 
 def _body(text: ExportText, line: int) -> tuple[bytes, bool]:

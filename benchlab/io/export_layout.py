@@ -75,6 +75,8 @@ def _begins(rows: Sequence[Row], index: int) -> bool:
     cells = rows[index][1]
     if all_numbers(cells):
         return sum(map(bool, cells)) >= 2
+    if len(cells) > 1 and all(is_number(cell) or _NO_READING.fullmatch(cell) for cell in cells):
+        return any(map(is_number, cells))
     numeric = [is_number(cell) for cell in cells]
     same = rows[index + 1 : index + _FEW]
     return sum(numeric) >= 2 and len(same) == _FEW - 1 and all([is_number(c) for c in r] == numeric for _, r in same)
@@ -148,6 +150,9 @@ def _with_header(path: Path, rows: Sequence[Row], below: int, first: int, last: 
     if top > below and _is_names(rows[top - 1][1], width, bool(units)):
         top -= 1
         names = rows[top][1]
+    if names and top > below and _is_split(rows[top - 1][1], names):
+        top -= 1
+        names = [_fuller(upper, lower) for upper, lower in zip(rows[top][1], names)]
     used = _used(rows[first:last], width)
     for what, found in (("header", names), ("row of units", units)):
         if _filled(found) > width or (what == "header" and 0 < len(found) < used):
@@ -177,6 +182,17 @@ def _is_names(cells: Sequence[str], width: int, has_units: bool) -> bool:
     if is_number(cells[0]):
         return False
     return (len(cells) == width and (has_units or sum(map(bool, cells)) > 1)) or (has_units and len(cells) > 1)
+
+
+def _is_split(upper: Sequence[str], names: Sequence[str]) -> bool:
+    """Whether a row above the names is a first line of them: a word in each place, two of which name quantities."""
+    return len(upper) == len(names) and all(upper) and not any(map(is_number, upper)) and known_words(upper) > 1
+
+
+def _fuller(upper: str, lower: str) -> str:
+    """The one of a name's two lines that names a quantity, else both."""
+    named = [part for part in (lower, upper) if known_words([part])]
+    return named[0] if named else f"{upper} {lower}"
 
 
 def _filled(cells: Sequence[str]) -> int:

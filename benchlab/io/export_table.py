@@ -6,6 +6,7 @@ files of plain numbers are read by `export_fast`, all others here, to the same r
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,19 +19,21 @@ from benchlab.io.export_layout import Span, find_layout
 from benchlab.io.export_numbers import Column, Lines, Signs, find_signs, numbers
 from benchlab.io.export_text import ExportText, Row, is_number, read_text, rows_of
 
+_SHORT = re.compile(r"[+-]?\d+([.,]\d*)?")
+
 
 @dataclass(frozen=True)
 class ExportTable:
     """One table of n rows. names and units: of its columns, "" where the file has none. lines: of its rows in the file, (n,).
 
-    label: what stands over a first column that is empty, as a specimen's number. header_line: None without a header.
+    label: what stands over a first column that is empty, as a specimen's number. header: lines of names and of units, if any.
     """
 
     path: Path
     names: tuple[str, ...]
     units: tuple[str, ...]
     label: str
-    header_line: int | None
+    header: tuple[int, ...]
     lines: Lines
     width: int
     signs: Signs
@@ -39,11 +42,18 @@ class ExportTable:
 
     @property
     def has_header(self) -> bool:
-        return self.header_line is not None
+        return bool(self.header)
 
     def is_empty(self, index: int) -> bool:
         """Whether no row has a cell in a column."""
         return not self.plain and not any(cells[index] for _, cells in self.rows)
+
+    def texts(self, index: int) -> list[str]:
+        """The cells of a column as texts, numbers in their shortest form."""
+        if self.plain:
+            return [f"{value:g}" for value in self.plain[index].values]
+        cells = (cells[index] for _, cells in self.rows)
+        return [f"{float(cell.replace(',', '.')):g}" if _SHORT.fullmatch(cell) else cell for cell in cells]
 
     def column(self, index: int, label: str = "") -> tuple[Column, list[str]]:
         """The numbers of a column, and notes. Raises InputError, with the line, for damaged ones. label: its name in messages."""
@@ -77,7 +87,7 @@ def read_export(path: Path, encoding: str | None = None, decimal: str | None = N
     plain = None if strict else read_plain(text, decimal)
     if plain is None:
         return _read_strictly(text, decimal)
-    table = _table(path, plain.span, plain.header_line, plain.lines, plain.signs, columns=plain.columns)
+    table = _table(path, plain.span, plain.header, plain.lines, plain.signs, columns=plain.columns)
     return _export(text, plain.signs, (table,), plain.before, plain.cut)
 
 
@@ -89,10 +99,10 @@ def _read_strictly(text: ExportText, decimal: str | None) -> Export:
     signs = find_signs(text.path, cells, text.separator, decimal)
     tables = []
     for span in layout.spans:
-        header_line = rows[span.top][0] if span.has_header else None
+        header = tuple(line for line, _ in rows[span.top : span.first])
         body = rows[span.first : span.last]
         lines = np.array([line for line, _ in body])
-        tables.append(_table(text.path, span, header_line, lines, signs, rows=body))
+        tables.append(_table(text.path, span, header, lines, signs, rows=body))
     used = {index for span in layout.spans for index in range(span.top, span.last)}
     left = tuple(row for index, row in enumerate(rows) if index not in used and row[0] != layout.cut)
     return _export(text, signs, tuple(tables), left, layout.cut)
@@ -101,7 +111,7 @@ def _read_strictly(text: ExportText, decimal: str | None) -> Export:
 def _table(
     path: Path,
     span: Span,
-    header_line: int | None,
+    header: tuple[int, ...],
     lines: Lines,
     signs: Signs,
     columns: tuple[Column, ...] = (),
@@ -110,7 +120,7 @@ def _table(
     width = len(columns) or len(rows[0][1])
     blank = ("",) * width
     names, units = span.names or blank, span.units or blank
-    return ExportTable(path, names, units, span.label, header_line, lines, width, signs, columns, rows)
+    return ExportTable(path, names, units, span.label, header, lines, width, signs, columns, rows)
 
 
 def _export(

@@ -41,6 +41,11 @@ COLUMN_WORDS: dict[str, tuple[str, ...]] = {
         *("segment", "segment id", "segment number", "step", "phase", "schritt", "abschnitt", "krok", "segmento", "paso", "étape"),
         *("段", "阶段"),
     ),
+    "specimen": (
+        *("specimen", "specimen id", "specimen no", "specimen number", "specimen name", "specimen label", "test specimen"),
+        *("probe", "probekörper", "proben-nr", "próbka", "numer próbki", "probeta", "éprouvette", "provino", "corpo de prova"),
+        *("vzorek", "образец", "numune", "试样", "试样编号", "試験片", "시편"),
+    ),
 }  # fmt: skip
 """Names of columns in lower case, by what they hold."""
 
