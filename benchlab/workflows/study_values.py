@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import math
 import os
-from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,8 +13,7 @@ from typing import Any
 import numpy as np
 
 from benchlab.errors import BenchlabError, UsageError
-from benchlab.io.files import check_regular_file, reason_of, sha256
-from benchlab.io.run_file import read_provenance
+from benchlab.io.files import reason_of, sha256
 from benchlab.io.study_file import Study, StudyDesign, StudyRecording, StudySample
 from benchlab.io.study_values import (
     CycleValue,
@@ -26,29 +24,15 @@ from benchlab.io.study_values import (
     Simulated,
     StudyValues,
 )
-from benchlab.workflows.analyze import analyze
 from benchlab.workflows.batch import run_batch
-from benchlab.workflows.outputs import Outputs
-from benchlab.workflows.settings import AnalyzeSettings
-from benchlab.workflows.study_readings import Target, read_run, read_table
+from benchlab.workflows.study_readings import Target
+from benchlab.workflows.study_recordings import Place, read_item, study_items
 from benchlab.workflows.study_simulated import simulated_of
 
 Progress = Callable[[int, int | None], None]
 
 RECORDINGS = "recordings"
 """Folder in the output folder with the analysed recordings, as DESIGN/SAMPLE/NAME.h5, .csv and .png."""
-
-Place = tuple[str, str, int]
-
-
-@dataclass(frozen=True)
-class _Item:
-    """One recording to be read. place: design, sample, and which of its recordings. folder, stem: where its analysis goes."""
-
-    place: Place
-    recording: StudyRecording
-    folder: Path
-    stem: str
 
 
 @dataclass(frozen=True)
@@ -70,9 +54,9 @@ def collect(
     finished is current the next time.
     """
     _check_folder(out)
-    items = list(_items(study, out / RECORDINGS))
+    items = list(study_items(study, out / RECORDINGS))
     target = Target.of(study.pressure_MPa, study.hold_tolerance_MPa)
-    work = functools.partial(_read, target=target, overwrite=overwrite)
+    work = functools.partial(read_item, target=target, overwrite=overwrite)
     read: dict[Place, _Read] = {}
     for outcome in run_batch(items, work, jobs):
         if outcome.result and outcome.result["partial"]:
@@ -82,23 +66,6 @@ def collect(
         if progress:
             progress(len(read), len(items))
     return _assembled(study, target, read)
-
-
-def analyze_settings(recording: StudyRecording) -> AnalyzeSettings:
-    """The settings that a study gives for a recording. Raises UsageError for values out of range or without meaning together."""
-    given = dict(recording.analysis)
-    onset = given.get("sync") == "onset"
-    if onset:
-        del given["sync"]
-    if not (given.get("pressure") or given.get("ramp")):
-        given.pop("sync", None)
-        onset = False
-    for name in ("roi_px", "reference_px"):
-        if name in given:
-            given[name] = tuple(given[name])
-    settings = AnalyzeSettings(**given, sync_onset=onset)
-    settings.check()
-    return settings
 
 
 def _check_folder(out: Path) -> None:
@@ -112,41 +79,6 @@ def _check_folder(out: Path) -> None:
         raise UsageError(what, file=out, hint="choose another --out") from error
     if not os.access(out / RECORDINGS, os.W_OK | os.X_OK):
         raise UsageError("the output folder is read-only", file=out / RECORDINGS, hint="choose another --out")
-
-
-def _items(study: Study, folder: Path) -> Iterator[_Item]:
-    for design in study.designs:
-        for sample in design.samples:
-            used: set[str] = set()
-            for index, recording in enumerate(sample.recordings):
-                stem = recording.path.name if recording.path.is_dir() else recording.path.stem
-                if stem.casefold() in used:
-                    stem = f"{stem}_{index + 1}"
-                used.add(stem.casefold())
-                yield _Item((design.name, sample.name, index), recording, folder / design.name / sample.name, stem)
-
-
-def _read(item: _Item, target: Target, overwrite: bool) -> dict[str, Any]:
-    """One recording, in this process or in a worker: its status, readings and content."""
-    recording = item.recording
-    if recording.kind == "video":
-        item.folder.mkdir(parents=True, exist_ok=True)
-        outputs = Outputs(item.folder, item.stem, overwrite)
-        summary = analyze(recording.path, analyze_settings(recording), outputs)
-        content = (read_provenance(outputs.run_file) or {}).get("sha256", "")
-        return {
-            "status": summary["status"],
-            "partial": summary["status"] == "partial",
-            "readings": read_run(outputs.run_file, target),
-            "sha256": content,
-        }
-    check_regular_file(recording.path)
-    if recording.kind == "run":
-        readings = read_run(recording.path, target)
-    else:
-        design, sample, _ = item.place
-        readings = read_table(recording.path, design, sample, target)
-    return {"status": "read", "partial": False, "readings": readings, "sha256": sha256(recording.path)}
 
 
 def _done(recording: StudyRecording, result: dict[str, Any] | None) -> _Read:
@@ -176,7 +108,9 @@ def _assembled(study: Study, target: Target, read: Mapping[Place, _Read]) -> Stu
         failures += missing
         designs.append(DesignValues(design.name, design.shell, simulated, samples))
     failures += [*_without_values(designs)]
-    inputs = {item.values.file: item.sha256 for item in read.values() if item.sha256}
+    inputs = {study.path.name: sha256(study.path)}
+    inputs |= {item.values.file: item.sha256 for item in read.values() if item.sha256}
+    inputs |= {s.file: sha256(s.path) for d in study.designs if (s := d.simulated) and s.path and s.path.is_file()}
     return StudyValues(
         title=study.title,
         notes=study.notes,
@@ -187,7 +121,7 @@ def _assembled(study: Study, target: Target, read: Mapping[Place, _Read]) -> Stu
         sets=study.sets,
         failures=tuple(failures),
         left_out=tuple(_left_out(designs)),
-        warnings=(*_warnings(designs), *_twice(read)),
+        warnings=(*_warnings(designs), *_twice(study, read)),
         inputs=inputs,
     )
 
@@ -255,14 +189,19 @@ def _warnings(designs: list[DesignValues]) -> Iterator[Missing]:
                         yield Missing(why, design.name, sample.name, recording.file, cycle.cycle)
 
 
-def _twice(read: Mapping[Place, _Read]) -> Iterator[Missing]:
-    """Recordings with the same content as another: copies are no repetition."""
-    same: dict[str, list[Place]] = defaultdict(list)
-    for place, item in read.items():
-        if item.sha256:
-            same[item.sha256].append(place)
-    for places in same.values():
-        for design, sample, index in sorted(places[1:]):
-            first = read[places[0]].values.file
-            why = f"has the same content as {first} of {places[0][0]} {places[0][1]}"
-            yield Missing(why, design, sample, read[design, sample, index].values.file)
+def _twice(study: Study, read: Mapping[Place, _Read]) -> Iterator[Missing]:
+    """Recordings with the same content as another file: copies are no repetition."""
+    paths = {
+        (design.name, sample.name, index): os.path.normpath(recording.path)
+        for design in study.designs
+        for sample in design.samples
+        for index, recording in enumerate(sample.recordings)
+    }
+    first: dict[str, Place] = {}
+    for place, path in paths.items():
+        if not (content := read[place].sha256):
+            continue
+        other = first.setdefault(content, place)
+        if paths[other] != path:
+            why = f"has the same content as {read[other].values.file} of {other[0]} {other[1]}"
+            yield Missing(why, place[0], place[1], read[place].values.file)
