@@ -8,10 +8,9 @@ float, as float() does.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from io import BytesIO
 from typing import Any
 
 import numpy as np
@@ -19,14 +18,17 @@ from numpy.typing import NDArray
 
 from benchlab.errors import InputError
 from benchlab.io.export_layout import Span, find_layout, is_cut
-from benchlab.io.export_numbers import Column, FloatArray, Signs, find_signs
+from benchlab.io.export_numbers import BARE, Column, FloatArray, Signs, find_signs, tells_decimal
 from benchlab.io.export_text import HEAD, MAX_ROWS, TAIL, ExportText, Row, head_lines, split_lines
 from benchlab.io.numbers import MAX_NUMBER
 
 MIN_BYTES = 4 * HEAD
 """Smaller files are left to the strict reader."""
 
-_CHUNK = 1 << 22
+_CHUNK = 1 << 21
+_SAMPLE = 200
+"""Bytes that a thread reads at a time; rows by which the decimal sign is found."""
+
 _NEWLINE, _RETURN, _QUOTE, _NINE, _ZERO = b'\n\r"90'
 _EXPONENTS = b"eE"
 
@@ -61,23 +63,29 @@ def read_plain(text: ExportText, stated: str | None = None) -> PlainTable | None
         span = layout.spans[-1]
         if len(layout.spans) > 1 or span.last < len(rows):
             return None
-        numbers = rows[span.first : span.last]
-        signs = find_signs(
-            text.path, ((line, cell) for line, cells in numbers for cell in cells), text.separator, stated
-        )
-        first = numbers[0]
-        body, is_last_cut = _body(text, first[0])
-        columns = _columns(body, text.separator, signs.decimal, first[1])
+        first, cells = rows[span.first]
+        signs = _signs(text, rows[span.first : span.last][:_SAMPLE], stated)
+        start, end, is_last_cut = _body(text, first)
+        columns = _columns(data, start, end, text.separator, signs.decimal, cells)
     except (NotPlainError, InputError):
         return None
-    lines = range(first[0], first[0] + len(columns[0].values))
+    lines = range(first, first + len(columns[0].values))
     header = tuple(line for line, _ in rows[span.top : span.first])
     cut = lines.stop if is_last_cut else None
     return PlainTable(tuple(rows[: span.top]), span, header, signs, columns, lines, cut)
 
 
-def _body(text: ExportText, line: int) -> tuple[bytes, bool]:
-    """The bytes from the beginning of a line to the end of the last row that was not cut, and whether one was."""
+def _signs(text: ExportText, rows: Sequence[Row], stated: str | None) -> Signs:
+    """The signs of numbers, if the first rows prove them for all others: beside commas as separators, any point is for decimals."""
+    signs = find_signs(text.path, ((line, cell) for line, cells in rows for cell in cells), text.separator, stated)
+    proven = stated or text.separator == "," or any(tells_decimal(cell) for _, cells in rows for cell in cells)
+    if not proven:
+        raise NotPlainError
+    return signs
+
+
+def _body(text: ExportText, line: int) -> tuple[int, int, bool]:
+    """Where a line begins, where the last row that was not cut ends (after its line end, if it has one), and whether one was cut."""
     data, start = text.data, 0
     for _ in range(line - 1):
         start = data.index(b"\n", start) + 1
@@ -90,68 +98,101 @@ def _body(text: ExportText, line: int) -> tuple[bytes, bool]:
         raise NotPlainError
     if cut := is_cut(rows, unpaired, text.is_whole):
         end = data.rindex(b"\n", start, end)
-    return data[start:end].rstrip(b"\r\n") + (b"\r\n" if data.find(b"\r", start) >= 0 else b"\n"), cut
+    return start, data.find(b"\n", end) + 1 or len(data), cut
 
 
-def _columns(body: bytes, separator: str, decimal: str, first: list[str]) -> tuple[Column, ...]:
-    """All columns of the body. Raises NotPlainError for the first doubt."""
-    proof = _Proof(separator, decimal, len(first), all(decimal in cell for cell in first), body.startswith(b'"'))
-    with ThreadPoolExecutor(max(1, min(4, os.cpu_count() or 1))) as pool:
-        parts = list(pool.map(proof.read, _chunks(body)))
-    if sum(len(values[0]) for values, _ in parts) > MAX_ROWS:
+def _columns(data: bytes, start: int, end: int, separator: str, decimal: str, first: list[str]) -> tuple[Column, ...]:
+    """All columns between two places. Raises NotPlainError for the first doubt."""
+    width, all_marked = len(first), all(decimal in cell for cell in first)
+    quoted = data.startswith(b'"', start)
+    if not quoted and data.find(b'"', start, end) >= 0:
         raise NotPlainError
-    columns = []
-    for index in range(len(first)):
-        values = np.concatenate([part[index] for part, _ in parts])
-        decimals = [counts[:, index] for _, counts in parts if counts is not None]
-        columns.append(Column(values, np.concatenate(decimals) if decimals else None))
-    return tuple(columns)
+    proof = _Proof(separator, decimal, width, all_marked, quoted, data.find(b"\r", start, end) >= 0)
+    chunks = list(_chunks(data, start, end))
+    codes = np.frombuffer(data, np.uint8)
+
+    with ThreadPoolExecutor(max(1, min(4, os.cpu_count() or 1))) as pool:
+        counts = list(pool.map(lambda place: np.count_nonzero(codes[slice(*place)] == _NEWLINE), chunks))
+        counts[-1] += codes[end - 1] != _NEWLINE
+        if (rows := sum(counts)) > MAX_ROWS:
+            raise NotPlainError
+        values = np.empty((width, rows))
+        decimals = None if all_marked else np.empty((width, rows), np.int16)
+
+        def read(place: tuple[int, int], first: int, last: int) -> None:
+            part = None if decimals is None else decimals[:, first:last]
+            proof.read(_whole_lines(data, *place), values[:, first:last], part)
+
+        after = np.cumsum(counts)
+        list(pool.map(read, chunks, after - counts, after))
+    return tuple(Column(v, decimals if decimals is None else decimals[i]) for i, v in enumerate(values))
 
 
-def _chunks(body: bytes) -> Iterator[bytes]:
-    start = 0
-    while start < len(body):
-        end = body.find(b"\n", start + _CHUNK) + 1 or len(body)
-        yield body[start:end]
-        start = end
+def _chunks(data: bytes, start: int, end: int) -> Iterator[tuple[int, int]]:
+    """Places of whole lines, together about as long as _CHUNK."""
+    while start < end:
+        after = data.find(b"\n", start + _CHUNK, end) + 1 or end
+        yield start, after
+        start = after
+
+
+def _whole_lines(data: bytes, start: int, end: int) -> memoryview:
+    """A part of the file; the end of its last line is added where it is missing."""
+    part = memoryview(data)[start:end]
+    if part[-1] == _NEWLINE:
+        return part
+    line_end = b"\r\n" if data.find(b"\r", start, end) >= 0 else b"\n"
+    return memoryview(bytes(part).rstrip(b"\r") + line_end)
+
+
+class _Bytes:
+    """A file that pandas reads from memory, in small parts."""
+
+    def __init__(self, data: memoryview) -> None:
+        self.data, self.at = data, 0
+
+    def read(self, count: int = -1) -> bytes:
+        start, self.at = self.at, len(self.data) if count < 0 else self.at + count
+        return bytes(self.data[start : self.at])
+
+    def __iter__(self) -> Iterator[bytes]:
+        return iter(self.read, b"")
 
 
 @dataclass(frozen=True)
 class _Proof:
-    """What each part of the body is held to. all_marked: every number has a decimal sign."""
+    """What each part of the body is held to. all_marked: every number has a decimal sign. returns: lines end in \\r\\n."""
 
     separator: str
     decimal: str
     width: int
     all_marked: bool
     quoted: bool
+    returns: bool
 
-    def read(self, chunk: bytes) -> tuple[list[FloatArray], NDArray[np.int16] | None]:
-        """Columns of whole lines, and the decimals of each cell (n, width) where not all numbers have a decimal sign."""
+    def read(self, chunk: memoryview, values: FloatArray, decimals: NDArray[np.int16] | None) -> None:
+        """Fill values (width, n) from n whole lines, and the decimals of each, where not all numbers have a decimal sign."""
         codes = np.frombuffer(chunk, np.uint8)
         ends = np.flatnonzero(codes == _NEWLINE)
         self._check_characters(codes, ends)
-        decimals = None if self.all_marked else self._decimals(codes)
-        values = self._parse(chunk, len(ends))
-        marks = np.count_nonzero(codes == ord(self.decimal))
-        if self.all_marked and marks != len(ends) * self.width:
+        if decimals is not None:
+            decimals[:] = self._decimals(codes).T
+        elif np.count_nonzero(codes == ord(self.decimal)) != len(ends) * self.width:
             raise NotPlainError
-        return values, decimals
+        self._parse(chunk, values)
 
     def _check_characters(self, codes: Bytes, ends: NDArray[np.intp]) -> None:
         """Lines short enough, ends of lines alike, cells all quoted or all bare, no letters but of exponents."""
         longest = int(max(ends[0] + 1, np.diff(ends).max(initial=0)))
-        returns = np.count_nonzero(codes == _RETURN)
         least = self.width * (3 if self.quoted else 1) + self.width
-        if longest - least > MAX_NUMBER or (returns and not (codes[ends - 1] == _RETURN).all()):
+        if longest - least > MAX_NUMBER:
             raise NotPlainError
-        if returns not in (0, len(ends)):
+        if self.returns and not (
+            np.count_nonzero(codes == _RETURN) == len(ends) and (codes[ends - 1] == _RETURN).all()
+        ):
             raise NotPlainError
-        quotes = codes == _QUOTE
         if self.quoted:
-            self._check_quotes(codes, quotes, ends - 1 - (returns > 0))
-        elif quotes.any():
-            raise NotPlainError
+            self._check_quotes(codes, codes == _QUOTE, ends - 1 - self.returns)
         if codes.max() > _NINE:
             letters = codes > _NINE
             known = sum(np.count_nonzero(codes == code) for code in {*_EXPONENTS, ord(self.separator)} if code > _NINE)
@@ -179,7 +220,7 @@ class _Proof:
         last = np.where(codes[ends - 1] == _RETURN, ends - 1, ends)
         cell = np.searchsorted(ends, marks)
         decimals = np.zeros(len(ends), np.int16)
-        decimals[cell] = last[cell] - marks - 1
+        decimals[cell] = np.where(last[cell] > marks + 1, last[cell] - marks - 1, BARE)
         blank = np.count_nonzero((codes == ord(" ")) | (codes == ord("\t")))
         if (blank and self.separator != "\t") or (
             (decimals == 0) & (codes[starts] == _ZERO) & (last - starts > 1)
@@ -187,17 +228,16 @@ class _Proof:
             raise NotPlainError
         return decimals.reshape(-1, self.width)
 
-    def _parse(self, chunk: bytes, rows: int) -> list[FloatArray]:
+    def _parse(self, chunk: memoryview, values: FloatArray) -> None:
         import pandas
 
         exact: dict[str, Any] = {}
         if int(pandas.__version__.split(".")[0]) < 3:
             exact = {"float_precision": "round_trip"}
-        separator = r"\s+" if self.separator == " " else self.separator
         try:
             frame = pandas.read_csv(
-                BytesIO(chunk),
-                sep=separator,
+                _Bytes(chunk),
+                sep=r"\s+" if self.separator == " " else self.separator,
                 decimal=self.decimal,
                 header=None,
                 dtype=np.float64,
@@ -207,9 +247,9 @@ class _Proof:
             )
         except (ValueError, OverflowError) as error:
             raise NotPlainError from error
-        if frame.shape != (rows, self.width):
+        if frame.shape != values.shape[::-1]:
             raise NotPlainError
-        values = [frame[name].to_numpy() for name in frame.columns]
-        if not all(np.isfinite(column).all() for column in values):
+        for row, name in zip(values, frame.columns):
+            row[:] = frame[name].to_numpy()
+        if not np.isfinite(values).all():
             raise NotPlainError
-        return values

@@ -20,8 +20,9 @@ Lines = NDArray[np.int64] | range
 NUMBER = r"[+\-−]?(?:\d+(?:[ '’\u00a0\u202f]\d{3}(?!\d))*(?:[.,][\d.,]*)?|[.,]\d+)(?:[eE][+-]?\d+)?"
 """What is meant as a number, also where it is a damaged one."""
 
-NO_NUMBER, EXPONENT, PADDED = -1, -2, -3
-"""In place of a count of decimals: a cell without a number, with an exponent, a whole number that begins with a zero."""
+NO_NUMBER, EXPONENT, PADDED, BARE = -1, -2, -3, -4
+"""In place of a count of decimals: a cell without a number, with an exponent, a whole number that begins with a zero, one that ends
+in its decimal sign."""
 
 _WITH_UNIT = re.compile(rf"({NUMBER})\s*[A-Za-zµμ°%²³]+[/A-Za-z0-9²³^]*")
 _GROUP = r"[+\-−]?[1-9]\d{0,2}"
@@ -83,6 +84,15 @@ def find_signs(path: Path, cells: Iterable[tuple[int, str]], separator: str, sta
     if sign in lines or not vague or (sign and not set(vague) - {sign}) or (sign and grouped):
         return Signs(sign or ".", grouped)
     raise _two_readings(path, *next(iter(vague.values())))
+
+
+def tells_decimal(cell: str) -> bool:
+    """Whether a number proves by itself which sign marks its decimals.
+
+    >>> tells_decimal("0.25"), tells_decimal("1.250"), tells_decimal("3")
+    (True, False, False)
+    """
+    return bool(_told(cell)[0])
 
 
 def _told(cell: str) -> tuple[str, str]:
@@ -150,8 +160,9 @@ class _Cells:
             return None
         if match[3]:
             return value, EXPONENT
-        decimals = len(match[1] or match[2] or "")
-        return value, PADDED if not decimals and _PADDED.fullmatch(cell) else decimals
+        if decimals := len(match[1] or match[2] or ""):
+            return value, decimals
+        return value, BARE if match[1] == "" else PADDED if _PADDED.fullmatch(cell) else 0
 
     def refuse(self, cell: str, line: int) -> None:
         """Raises InputError for text that may hide a number."""
