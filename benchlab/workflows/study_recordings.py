@@ -50,9 +50,8 @@ def study_items(study: Study, folder: Path) -> Iterator[StudyItem]:
             used: set[str] = set()
             for index, recording in enumerate(sample.recordings):
                 name = recording.path.name if recording.path.is_dir() else recording.path.stem
-                stem = next(
-                    stem for stem in (name, *(f"{name}_{i}" for i in itertools.count(2))) if stem.casefold() not in used
-                )
+                names = itertools.chain([name], (f"{name}_{number}" for number in itertools.count(2)))
+                stem = next(stem for stem in names if stem.casefold() not in used)
                 used.add(stem.casefold())
                 shared = times[os.path.normpath(recording.path)] > 1
                 place = (design.name, sample.name, index)
