@@ -35,13 +35,15 @@ class Column:
 
 @dataclass(frozen=True)
 class Table:
-    """name: of its CSV file. rows: a cell a column. most: rows shown on the page; the CSV file has all."""
+    """name: of its CSV file. rows: a cell a column. by: a column whose text stands as a line over the rows that share it, on the page.
+    most: rows shown on the page; the CSV file has all."""
 
     name: str
     caption: str
     columns: tuple[Column, ...]
     rows: tuple[tuple[Cell, ...], ...]
     note: str = ""
+    by: str = ""
     most: int = 60
 
     @property
@@ -56,6 +58,13 @@ class Table:
         return tuple(tuple(row[index].text for index in kept) for row in self.rows[: self.most])
 
     @property
+    def lines(self) -> tuple[str, ...]:
+        """For each row of the page: what stands as a line over it, or ""."""
+        at = next((index for index, column in enumerate(self.columns) if self.by and column.name == self.by), None)
+        over = ["" if at is None else row[at].text for row in self.rows[: self.most]]
+        return tuple("" if index and over[index - 1] == text else text for index, text in enumerate(over))
+
+    @property
     def notes(self) -> tuple[str, ...]:
         """What stands under it, first of all that the page does not have all rows."""
         left_off = f"The first {self.most} of {len(self.rows)} rows; all are in {self.name}.csv."
@@ -64,28 +73,45 @@ class Table:
 
 @dataclass(frozen=True)
 class Panel:
-    """One figure: name of its files, svg: the text of an SVG file, words: what it shows, for those who do not see it."""
+    """One figure: name of its files, svg: the text of an SVG file, words: what it shows, for those who do not see it; png: its bytes."""
 
     name: str
     svg: str
     words: str
+    png: bytes = b""
 
 
 @dataclass(frozen=True)
 class Pictures:
-    """Panels that share a caption, in a row of up to `abreast`."""
+    """Panels that share a caption, side by side as they fit; stacked: in two columns, each filled from the top."""
 
     panels: tuple[Panel, ...]
     caption: str
-    abreast: int = 2
+    stacked: bool = False
 
 
 @dataclass(frozen=True)
 class Words:
-    """A paragraph. kind: plain, lead (large), good (a finding), warning or small."""
+    """A paragraph. kind: plain, lead (large), warning or small. head: bold words before it."""
 
     text: str
     kind: str = "plain"
+    head: str = ""
+
+
+class Tile(NamedTuple):
+    """A number to be seen from afar, what it is, and what belongs to it in small letters."""
+
+    value: str
+    name: str
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Tiles:
+    """Tiles in a row."""
+
+    row: tuple[Tile, ...]
 
 
 @dataclass(frozen=True)
@@ -95,7 +121,7 @@ class Items:
     rows: tuple[tuple[str, str], ...]
 
 
-Block = Words | Items | Table | Pictures
+Block = Words | Tiles | Items | Table | Pictures
 
 
 @dataclass(frozen=True)

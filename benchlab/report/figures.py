@@ -9,7 +9,7 @@ import logging
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 
@@ -111,7 +111,7 @@ def draw_curvature_figure(series: CurvatureSeries, title: str, note: str = "") -
     return figure
 
 
-def save_png(figure: Figure, path: Path) -> None:
+def save_png(figure: Figure, path: Path | BinaryIO) -> None:
     """Write a figure as PNG at 150 dpi. OSError where the disk refuses."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from importlib.resources import files
 
-from benchlab.report.document import Block, Document, Items, Panel, Pictures, Table, Words
+from benchlab.report.document import Block, Document, Items, Panel, Pictures, Table, Tiles, Words
 from benchlab.report.svg import inline_svg
+
+_BINDS = re.compile(r"(?<=\bp) (?=[<=])|(?<=\bp [<=]) |(?<=\d) (?=mm|MPa|%)")
 
 
 def render_page(document: Document) -> str:
@@ -13,8 +16,10 @@ def render_page(document: Document) -> str:
     from jinja2 import Environment, FunctionLoader, StrictUndefined
     from markupsafe import Markup
 
+    letters: set[str] = set()
+
     def inline(panel: Panel) -> Markup:
-        return Markup(inline_svg(panel.svg, panel.name, panel.words))
+        return Markup(inline_svg(panel, letters))
 
     environment = Environment(
         loader=FunctionLoader(template),
@@ -24,10 +29,11 @@ def render_page(document: Document) -> str:
         lstrip_blocks=True,
     )
     environment.filters["inline"] = inline
-    for name, kind in {"words": Words, "items": Items, "pictures": Pictures}.items():
+    environment.filters["bound"] = lambda text: _BINDS.sub("\u00a0", text)
+    for name, kind in {"words": Words, "tiles": Tiles, "items": Items, "pictures": Pictures}.items():
         environment.tests[name] = lambda block, kind=kind: isinstance(block, kind)
     page = environment.get_template("report.html.j2")
-    return page.render(document=document, css=Markup(template("report.css")), numbers=numbered(document))
+    return page.render(document=document, zip=zip, css=Markup(template("report.css")), numbers=numbered(document))
 
 
 def template(name: str) -> str:

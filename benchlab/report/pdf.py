@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from benchlab.errors import UsageError
-from benchlab.report.document import Block, Document, Items, Pictures, Words
+from benchlab.report.document import Block, Document, Items, Pictures, Tiles, Words
 from benchlab.report.page import numbered, template
+from benchlab.report.svg import size_in
 
 
 def check_pdf() -> None:
@@ -48,15 +49,20 @@ def _plain(document: Document) -> dict[str, Any]:
 
 def _block(block: Block, number: int | None) -> dict[str, Any]:
     if isinstance(block, Words):
-        return {"kind": "words", "style": block.kind, "text": block.text}
+        return {"kind": "words", "style": block.kind, "head": block.head, "text": block.text}
+    if isinstance(block, Tiles):
+        return {"kind": "tiles", "row": [list(tile) for tile in block.row]}
     if isinstance(block, Items):
         return {"kind": "items", "rows": [list(row) for row in block.rows]}
     if isinstance(block, Pictures):
-        panels = [{"file": f"{panel.name}.svg", "words": panel.words} for panel in block.panels]
+        panels = [
+            {"file": f"{panel.name}.svg", "words": panel.words, "inches": size_in(panel)[0]} for panel in block.panels
+        ]
+        split = _half(block) if block.stacked else None
         return {
             "kind": "pictures",
             "panels": panels,
-            "abreast": block.abreast,
+            "split": split,
             "number": number,
             "caption": block.caption,
         }
@@ -65,6 +71,12 @@ def _block(block: Block, number: int | None) -> dict[str, Any]:
         "number": number,
         "caption": block.caption,
         "columns": [{"head": column.head, "number": column.number} for column in block.heads],
-        "rows": [list(row) for row in block.shown],
+        "rows": [{"line": line, "cells": list(row)} for line, row in zip(block.lines, block.shown)],
         "notes": list(block.notes),
     }
+
+
+def _half(block: Pictures) -> int:
+    """How many panels stand in the first of two columns that are as alike in height as can be."""
+    heights = [size_in(panel)[1] for panel in block.panels]
+    return min(range(1, len(heights) + 1), key=lambda count: max(sum(heights[:count]), sum(heights[count:])))

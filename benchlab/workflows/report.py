@@ -3,14 +3,69 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 from benchlab.errors import BenchlabError
-from benchlab.io.published import PublishedAngle
+from benchlab.io.files import sha256
+from benchlab.io.published import PublishedAngle, published_angles
+from benchlab.io.study_file import Study, read_study
 from benchlab.io.study_values import StudySet, StudyValues
+from benchlab.report.pdf import check_pdf
+from benchlab.report.study.document import study_document
+from benchlab.report.study.numbers import report_numbers
 from benchlab.report.study.report import ComparedSet, PublishedSet, SAME_PRESSURE_MPa, StudyReport
 from benchlab.stats.comparison import Comparison, compare, compare_summaries
 from benchlab.stats.measurements import measurements_of
 from benchlab.workflows.provenance import made_by
+from benchlab.workflows.report_outputs import NUMBERS, PAGE, PDF, ReportOutputs, names_of, write_report
+from benchlab.workflows.study_values import Progress, collect
+
+STUDY_FILE = "study.yaml"
+
+
+def report(
+    study: Path,
+    out: Path,
+    jobs: int = 1,
+    pdf: bool = False,
+    confidence: float = 0.95,
+    difference_deg: float | None = None,
+    overwrite: bool = False,
+    progress: Progress | None = None,
+) -> dict[str, Any]:
+    """Analyse what has changed in a study (a YAML file, or a folder with study.yaml), and write its report into `out`.
+
+    Returns the numbers of report.json, with the paths written as `outputs`. A recording that fails is among `failures`; the report is
+    written all the same. Raises UsageError and InputError; then there is no new report, and recordings that were analysed stay current.
+    """
+    asked = read_study(study / STUDY_FILE if study.is_dir() else study)
+    if pdf:
+        check_pdf()
+    outputs = ReportOutputs(out, "report", overwrite, names=(PAGE, *[PDF] * pdf, NUMBERS))
+    read = tuple(_read_by(asked))
+    outputs.check(overlay=False, inputs=read)
+    with outputs.locked():
+        values = collect(asked, out, jobs, progress, overwrite)
+        found = report_of(values, published_angles(), confidence, difference_deg)
+        found.provenance["study"] = {"file": str(asked.path), "sha256": sha256(asked.path)}
+        document = study_document(found)
+        outputs = replace(outputs, names=names_of(document, pdf))
+        outputs.check(overlay=False, inputs=read)
+        numbers = write_report(outputs, document, values, report_numbers(found))
+    return {**numbers, "outputs": [str(path) for path in outputs.paths()]}
+
+
+def _read_by(study: Study) -> list[Path]:
+    """Every file that a study names: none of them may be replaced."""
+    found = [study.path]
+    for design in study.designs:
+        found += [recording.path for sample in design.samples for recording in sample.recordings]
+        found += [force.path for force in design.force]
+        if design.simulated is not None and design.simulated.path is not None:
+            found.append(design.simulated.path)
+    return found
 
 
 def report_of(
@@ -29,6 +84,7 @@ def report_of(
         near,
         _published_sets(near, confidence) if common else (),
         made_by("numpy", "scipy", "matplotlib", "jinja2"),
+        confidence,
     )
 
 
@@ -54,15 +110,17 @@ def _published_sets(published: Sequence[PublishedAngle], confidence: float) -> t
     """The slw set and the tw set of the paper's Figs 6c and 7c, and all its designs."""
     known = [p for p in published if p.measured_sd_deg is not None and p.samples is not None]
     chosen = (
-        ("Paper, slw set", "Fig. 6c", [p for p in known if p.tw_mm == 3]),
-        ("Paper, tw set", "Fig. 7c", [p for p in known if p.slw_mm == 10]),
-        ("Paper, all designs", "", known),
+        ("slw set", "Fig. 6c", [p for p in known if p.tw_mm == 3]),
+        ("tw set", "Fig. 7c", [p for p in known if p.slw_mm == 10]),
+        ("all designs", "", known),
     )
-    return tuple(PublishedSet(title, figure, _of_summaries(rows, confidence)) for title, figure, rows in chosen)
+    return tuple(
+        PublishedSet(title, figure, tuple(rows), _of_summaries(rows, confidence)) for title, figure, rows in chosen
+    )
 
 
 def _of_summaries(rows: Sequence[PublishedAngle], confidence: float) -> Comparison:
-    names = [f"tw {p.tw_mm:g}, slw {p.slw_mm:g}" for p in rows]
+    names = [p.design.name for p in rows]
     sizes = [p.samples or 0 for p in rows]
     means = [p.measured_angle_deg or 0.0 for p in rows]
     return compare_summaries(names, sizes, means, [p.measured_sd_deg or 0.0 for p in rows], confidence)

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
+import shlex
+from pathlib import Path
+
 from benchlab.report.document import Block, Cell, Column, Document, Items, Section, Table, Words, cut
 from benchlab.report.rounding import words
-from benchlab.report.study.pictures import bands_blocks, bars_blocks, consistency_blocks, intervals_blocks
-from benchlab.report.study.published import published_section
-from benchlab.report.study.report import StudyReport
-from benchlab.report.study.statistics import (
+from benchlab.report.study.differences import (
+    all_warnings,
     assumptions_table,
-    components_blocks,
-    consistency_table,
-    consistency_words,
-    found_sets,
     pairs_table,
     power_blocks,
     tests_table,
-    warnings_of,
 )
+from benchlab.report.study.pictures import bands_blocks, bars_blocks, consistency_blocks, intervals_blocks
+from benchlab.report.study.published import published_section
+from benchlab.report.study.repeatability import components_blocks, consistency_table, consistency_words
+from benchlab.report.study.report import StudyReport, found_sets
 from benchlab.report.study.tables import designs_table, samples_table
 from benchlab.report.study.verdict import verdict_section
 
@@ -80,7 +80,7 @@ def _doubts(report: StudyReport) -> list[Section]:
             blocks += [Words(f"{what}: {len(found)}."), _items([(one.what, one.why) for one in found])]
     if not blocks:
         blocks.append(Words("Nothing: every recording of the study has a value and counts."))
-    warnings = [*warnings_of(report), *((one.what, one.why) for one in values.warnings)]
+    warnings = all_warnings(report)
     sections = [Section("Left out and failed", tuple(blocks))]
     if warnings:
         sections.append(Section("Warnings", (_items(warnings),)))
@@ -97,7 +97,10 @@ def _items(rows: list[tuple[str, str]]) -> Items:
 def _provenance(report: StudyReport) -> Section:
     made = report.provenance
     versions = ", ".join(f"{name} {version}" for name, version in made["versions"].items())
-    rows = [("Command", " ".join(made["argv"])), ("Made", made["created"]), ("Versions", versions)]
+    command = shlex.join([Path(made["argv"][0]).name, *made["argv"][1:]])
+    rows = [("Command", command), ("Made", made["created"]), ("Versions", versions)]
+    if "study" in made:
+        rows.insert(0, ("Study file", f"{made['study']['file']}, SHA-256 {made['study']['sha256']}"))
     if made.get("git"):
         rows.append(("Source", f"commit {made['git']}"))
     inputs = tuple((words(name, 80), Cell(digest, f"{digest[:16]}…")) for name, digest in report.values.inputs.items())

@@ -23,7 +23,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 HALF_IN, THIRD_IN = 4.7, 3.1
-"""Widths of panels, two and three abreast on a page."""
+"""Widths of panels, two and three abreast on a page of 9.8 in."""
+
+TITLE_IN = 0.32
+"""Height over the axes for a title."""
 
 MOST_BRACKETED, MOST_ROWS = 6, 40
 """Groups up to which bars stand with brackets; rows up to which groups or pairs are drawn at all."""
@@ -34,7 +37,8 @@ OTHER = "#D55E00"
 TEXT: dict[str, Any] = {"parse_math": False, "fontsize": 8.5}
 _POINT = "#333333"
 _BARS_IN, _STEP_IN, _ROW_IN = 2.55, 0.21, 0.22
-_TICK_LETTERS = 50  # that stand side by side under bars
+_BAR_IN, _ROWS_IN = 0.64, 4.2  # width of a bar, and of a panel of rows
+_TICK_LETTERS = 8  # that fit under a bar
 
 
 @dataclass(frozen=True)
@@ -70,19 +74,20 @@ class AngleBand:
     simulated: tuple[FloatArray, FloatArray] | None = field(default=None)
 
 
-def draw_bars(bars: Sequence[Bar], pairs: Sequence[tuple[int, int, str]], label: str) -> Figure:
+def draw_bars(bars: Sequence[Bar], pairs: Sequence[tuple[int, int, str]], label: str, title: str) -> Figure:
     """Means as bars with ± SD and every sample as a point; brackets with the labels of `pairs` (bar, bar, stars) over them.
 
     More than MOST_BRACKETED groups lie as rows without brackets, of which the first MOST_ROWS are drawn.
     """
     if len(bars) > MOST_BRACKETED:
         shown = bars[:MOST_ROWS]
-        figure, ax = new_panel(HALF_IN, 0.85 + _ROW_IN * len(shown), bottom=0.73)
+        figure, ax = new_panel(_ROWS_IN, 1.3 + _ROW_IN * len(shown), bottom=0.9, top=TITLE_IN)
         plot_rows(ax, shown, label)
     else:
-        figure, ax = new_panel(HALF_IN, _BARS_IN + _STEP_IN * (_levels(pairs) + 1) + 0.82, bottom=0.7)
+        height = _BARS_IN + _STEP_IN * (_levels(pairs) + 1)
+        figure, ax = new_panel(0.72 + _BAR_IN * max(len(bars), 3), height + 0.82 + TITLE_IN, bottom=0.82, top=TITLE_IN)
         plot_bars(ax, bars, pairs, label, _BARS_IN, _STEP_IN)
-    _finish(figure, ax)
+    _finish(figure, ax, title, columns=2)
     return figure
 
 
@@ -112,7 +117,7 @@ def plot_bars(
     top = max([*reach, *(bracket.height for bracket in brackets)])
     ax.set_ylim(bottom * 1.06, top + 1.1 * step_in * per_in)
     ax.set_xlim(-0.6, len(bars) - 0.4)
-    ax.set_xticks(at, _two_lines([bar.name for bar in bars], _TICK_LETTERS // max(len(bars), 3)), **TEXT)
+    ax.set_xticks(at, _two_lines([bar.name for bar in bars], _TICK_LETTERS * max(3 // len(bars), 1)), **TEXT)
     dress(ax, None, label)
     ax.grid(False, axis="x")
     ax.tick_params(axis="x", length=0, labelsize=8.5, labelcolor="black")
@@ -133,12 +138,12 @@ def plot_rows(ax: Axes, bars: Sequence[Bar], label: str) -> None:
     ax.grid(False, axis="y")
 
 
-def draw_intervals(intervals: Sequence[Interval], label: str, confidence: float) -> Figure:
+def draw_intervals(intervals: Sequence[Interval], label: str, confidence: float, title: str) -> Figure:
     """Differences of means with simultaneous intervals, a row a pair; the first MOST_ROWS of them."""
     shown = intervals[:MOST_ROWS]
-    figure, ax = new_panel(HALF_IN, 0.95 + 0.27 * len(shown), bottom=0.73)
+    figure, ax = new_panel(HALF_IN, 0.83 + TITLE_IN + 0.27 * len(shown), bottom=0.73, top=TITLE_IN)
     plot_intervals(ax, shown, label, confidence)
-    _finish(figure, ax)
+    _finish(figure, ax, title, columns=2)
     return figure
 
 
@@ -162,11 +167,11 @@ def plot_intervals(ax: Axes, intervals: Sequence[Interval], label: str, confiden
 
 def draw_angle_band(band: AngleBand, y_limits: tuple[float, float] | None = None) -> Figure:
     """θ against pressure of one design; y_limits: those that it shares with the other designs."""
-    figure, ax = new_panel(THIRD_IN, 2.5, left=0.55, bottom=0.46, top=0.28)
+    figure, ax = new_panel(THIRD_IN, 2.5, left=0.55, bottom=0.46, top=TITLE_IN)
     plot_angle_band(ax, band)
     if y_limits is not None:
         ax.set_ylim(*y_limits)
-    ax.set_title(drawable(band.name, 30), loc="left", fontsize=9.5, fontweight="bold", parse_math=False, pad=5)
+    write_title(figure, band.name)
     return figure
 
 
@@ -205,12 +210,20 @@ def new_panel(width: float, height: float, bottom: float, left: float = 0.62, to
     return figure, figure.add_axes(box)
 
 
-def _finish(figure: Figure, ax: Axes) -> None:
-    """Room on the left for what stands there, and the legend as a line at the foot."""
+def write_title(figure: Figure, title: str) -> None:
+    """What a panel is of, over its left end, cut to its width."""
+    width, height = figure.get_size_inches()
+    figure.text(0.06 / width, 1 - 0.06 / height, drawable(title, int(width / 0.1)), va="top", fontsize=9.5, fontweight="bold",
+                parse_math=False)  # fmt: skip
+
+
+def _finish(figure: Figure, ax: Axes, title: str, columns: int) -> None:
+    """The title, room on the left for what stands there, and the legend at the foot."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    legend = figure.legend(*ax.get_legend_handles_labels(), loc="lower center", bbox_to_anchor=(0.5, 0.0), ncols=5, fontsize=8,
-                           frameon=False, borderaxespad=0.3, columnspacing=1.2, handletextpad=0.5)  # fmt: skip
+    write_title(figure, title)
+    legend = figure.legend(*ax.get_legend_handles_labels(), loc="lower center", bbox_to_anchor=(0.5, 0.0), ncols=columns, fontsize=8.5,
+                           frameon=False, borderaxespad=0.3, columnspacing=1.6, handletextpad=0.5)  # fmt: skip
     legend.set_in_layout(False)
     canvas = FigureCanvasAgg(figure)
     box, width = ax.get_position(), figure.bbox.width
@@ -220,19 +233,20 @@ def _finish(figure: Figure, ax: Axes) -> None:
 
 
 def _two_lines(names: Sequence[str], length: int) -> list[str]:
-    """Names for under bars: broken once, after a sign between its words, where they are too long for a line, and cut where for two."""
-    broken = []
-    for name in names:
-        whole = drawable(name, 10_000)
-        breaks = [i + 1 for i, c in enumerate(whole[:length]) if c in " _-,;/" and len(whole) - i - 1 <= length]
-        middle = min(breaks, key=lambda i: abs(2 * i - len(whole)), default=None)
-        if len(whole) <= length or middle is None:
-            broken.append(drawable(name, length))
-        else:
-            broken.append(f"{whole[:middle].rstrip()}\n{whole[middle:]}")
+    """Names for under bars: if one is too long for a line, all are broken after a sign between words; what is still too long is cut."""
+    whole = [drawable(name, 10_000) for name in names]
+    if all(len(name) <= length for name in whole):
+        return whole
+    broken = [_broken(name, length) for name in whole]
     return (
         broken if len(set(broken)) == len(set(names)) else [drawable(name, 10_000) for name in cut_apart(names, length)]
     )
+
+
+def _broken(name: str, length: int) -> str:
+    breaks = [i + 1 for i, c in enumerate(name[:length]) if c in " _-,;/" and len(name) - i - 1 <= length]
+    middle = min(breaks, key=lambda i: abs(2 * i - len(name)), default=None)
+    return drawable(name, length) if middle is None else f"{name[:middle].rstrip()}\n{name[middle:]}"
 
 
 def _levels(pairs: Sequence[tuple[int, int, str]]) -> int:

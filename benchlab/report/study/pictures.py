@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from benchlab.io.study_values import DesignValues
-from benchlab.report.document import Block, Panel, Pictures, Words, cut
+from benchlab.report.document import Block, Pictures, Words, cut
 from benchlab.report.study.consistency_figure import MOST_CELLS, draw_consistency
 from benchlab.report.study.figures import (
     MOST_BRACKETED,
@@ -20,10 +20,8 @@ from benchlab.report.study.figures import (
     draw_bars,
     draw_intervals,
 )
-from benchlab.report.study.report import ComparedSet, StudyReport, mean_of, sd_of, simulated_of
-from benchlab.report.study.statistics import found_sets
-from benchlab.report.study.verdict import name_of
-from benchlab.report.svg import svg_of
+from benchlab.report.study.report import ComparedSet, StudyReport, mean_of, name_of, sd_of, simulated_of
+from benchlab.report.svg import panel_of
 from benchlab.stats.comparison import Comparison
 from benchlab.stats.pairs import Pair
 from benchlab.stats.wording import STARS_LEGEND, p_equals, stars
@@ -39,17 +37,16 @@ def bars_blocks(report: StudyReport) -> Iterator[Block]:
         bars = [bar for design in report.values.of(one.chosen) if (bar := bar_of(design)) is not None]
         if bars:
             many = many or len(bars) > MOST_BRACKETED
-            figure = draw_bars(bars, brackets_of(one.found, [bar.name for bar in bars]), label)
-            panels.append(Panel(f"bars_{name}", svg_of(figure), f"Bars of mean angle: {name_of(one)}"))
+            figure = draw_bars(bars, brackets_of(one.found, [bar.name for bar in bars]), label, one.chosen.title)
+            panels.append(panel_of(figure, f"bars_{name}", f"Bars of mean angle: {name_of(one)}"))
     if not panels:
         yield Words("No sample has a value: there is nothing to draw.")
         return
     rows = f" Sets of more than {MOST_BRACKETED} designs lie as rows without brackets, the first {MOST_ROWS} designs of each."
-    titles = "; ".join(name_of(one) for one in report.compared)
     yield Pictures(
         tuple(panels),
-        f"{titles}. Bars: mean bending angle of the samples. Points: samples, each the mean of its cycles (n: Table 1). Whiskers: ± 1 "
-        f"standard deviation between samples. Diamonds: simulated. Brackets: Tukey’s HSD within the set, {STARS_LEGEND}, else p."
+        "Bars: mean bending angle of the samples. Points: samples, each the mean of its cycles (n: Table 1). Whiskers: ± 1 standard "
+        f"deviation between samples. Diamonds: simulated. Brackets: Tukey’s HSD within the set, {STARS_LEGEND}, else p."
         + rows
         * many,
     )
@@ -78,15 +75,14 @@ def intervals_blocks(report: StudyReport) -> Iterator[Block]:
         rows = [interval_of(pair, other) for pair, other in zip(one.found.tukey, one.found.games_howell)]
         if len(rows) > MOST_ROWS:
             cut_off.append(f"{name_of(one)}: the first {MOST_ROWS} of {len(rows)} pairs are drawn.")
-        figure = draw_intervals(rows, "difference of mean θ (°)", one.found.confidence)
-        panels.append(Panel(f"intervals_{name}", svg_of(figure), f"Intervals of differences: {name_of(one)}"))
+        figure = draw_intervals(rows, "difference of mean θ (°)", one.found.confidence, one.chosen.title)
+        panels.append(panel_of(figure, f"intervals_{name}", f"Intervals of differences: {name_of(one)}"))
     if panels:
         caption = (
-            f"{'; '.join(name_of(one) for one, _ in found_sets(report))}. Differences of mean angle, the second design less the first, "
-            "with simultaneous intervals for all pairs of the set: Tukey’s with one variance for all designs, Games and Howell’s with each "
-            "design’s own. An interval that does not touch the line at 0 shows a difference. "
+            "Differences of mean angle with simultaneous intervals for all pairs of the set: Tukey’s with one variance for all designs, "
+            "Games and Howell’s with each design’s own. An interval that does not touch the line at 0 shows a difference."
         )
-        yield Pictures(tuple(panels), " ".join([caption.strip(), *cut_off]))
+        yield Pictures(tuple(panels), " ".join([caption, *cut_off]), stacked=True)
 
 
 def interval_of(pair: Pair, other: Pair) -> Interval:
@@ -110,7 +106,7 @@ def bands_blocks(report: StudyReport) -> Iterator[Block]:
     room = 0.05 * (max(largest) - min(smallest))
     limits = (float(min(smallest) - room), float(max(largest) + room))
     panels = [
-        Panel(f"curve_{name}", svg_of(draw_angle_band(band, limits)), f"Angle against pressure of {cut(band.name, 40)}")
+        panel_of(draw_angle_band(band, limits), f"curve_{name}", f"Angle against pressure of {cut(band.name, 40)}")
         for band, name in zip(drawn, file_names([band.name for band in drawn]))
     ]
     off = f" The first {MOST_BANDS} of {len(bands)} designs are drawn." if len(bands) > MOST_BANDS else ""
@@ -120,7 +116,6 @@ def bands_blocks(report: StudyReport) -> Iterator[Block]:
         tuple(panels),
         "Bending angle against pressure as it rises. Line and band: mean of the samples ± 1 standard deviation between them. Grey: "
         f"single samples, each the mean of its cycles. Dashed: simulated, where there is a curve.{off}",
-        abreast=3,
     )
 
 
@@ -146,7 +141,7 @@ def consistency_blocks(report: StudyReport) -> Iterator[Block]:
     if not cells or len(cells) > MOST_CELLS:
         return
     panels = [
-        Panel(f"consistency_{statistic}", svg_of(draw_consistency(cells, statistic)), f"{statistic} of each sample")
+        panel_of(draw_consistency(cells, statistic), f"consistency_{statistic}", f"{statistic} of each sample")
         for statistic in ("h", "k")
         if any(getattr(cell, statistic) is not None for cell in cells)
     ]

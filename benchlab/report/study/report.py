@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from statistics import median
 from typing import Any
 
 from benchlab.io.published import PublishedAngle
 from benchlab.io.study_values import DesignValues, StudySet, StudyValues
-from benchlab.report.rounding import decimals_of
+from benchlab.report.document import Cell, cut
+from benchlab.report.rounding import NONE, decimals_of, number
 from benchlab.stats.comparison import Comparison
+from benchlab.stats.studentized_range import FLOOR
+from benchlab.stats.wording import p_text
 
 SAME_PRESSURE_MPa = 1e-6
 
@@ -26,23 +30,26 @@ class ComparedSet:
 
 @dataclass(frozen=True)
 class PublishedSet:
-    """Designs of the paper compared by their published means, SDs and sizes alone. figure: where the paper marks them, or ""."""
+    """Designs of the paper compared by their published means, SDs and sizes alone. figure: where the paper marks them, or "".
+    angles: what was published, in the order of the groups."""
 
     title: str
     figure: str
+    angles: tuple[PublishedAngle, ...]
     found: Comparison
 
 
 @dataclass(frozen=True)
 class StudyReport:
     """provenance: who made it, from what and how. published: the paper's angles; published_sets: empty where the study has none
-    of the paper's designs."""
+    of the paper's designs. confidence: of all intervals."""
 
     values: StudyValues
     compared: tuple[ComparedSet, ...]
     published: tuple[PublishedAngle, ...] = ()
     published_sets: tuple[PublishedSet, ...] = ()
     provenance: dict[str, Any] = field(default_factory=dict)
+    confidence: float = 0.95
 
     @property
     def whole(self) -> ComparedSet:
@@ -54,6 +61,11 @@ class StudyReport:
         """Decimals of angles: as many as give the usual standard deviation two digits."""
         spreads = [sd for design in self.values.designs if (sd := sd_of(design)) is not None and sd > 0]
         return min(decimals_of(median(spreads)) if spreads else 1, 4)
+
+    @property
+    def percent(self) -> str:
+        """The confidence in words, as `95 %`."""
+        return f"{100 * self.confidence:g} %"
 
     def published_of(self, design: DesignValues) -> PublishedAngle | None:
         """The paper's figures for a design of the same dimensions at the same pressure."""
@@ -82,3 +94,32 @@ def error_of(design: DesignValues) -> float | None:
     """Simulated less measured, in degrees."""
     mean, simulated = mean_of(design), simulated_of(design)
     return None if mean is None or simulated is None else simulated - mean
+
+
+def found_sets(report: StudyReport) -> list[tuple[ComparedSet, Comparison]]:
+    """The sets that could be compared, with what was found."""
+    return [(one, one.found) for one in report.compared if one.found is not None]
+
+
+def name_of(one: ComparedSet) -> str:
+    """The title of a set, cut."""
+    return cut(one.chosen.title, 70)
+
+
+def joined(items: Sequence[str], most: int = 5) -> str:
+    """Items as words; of many, the first.
+
+    >>> joined(["a", "b", "c"], 2)
+    'a, b and 1 more'
+    """
+    return ", ".join(items[:most]) + (f" and {len(items) - most} more" if len(items) > most else "")
+
+
+def probability(p: float | None, floor: float = FLOOR) -> Cell:
+    """A probability as the page shows it; below the floor only that it is below (for pairs: 1e-13, noise from there on)."""
+    return Cell(None, NONE) if p is None else Cell(p, p_text(p, floor))
+
+
+def span_text(low: float | None, high: float | None, places: int) -> str:
+    """The ends of an interval, or a dash."""
+    return NONE if low is None or high is None else f"{number(low, places).text} to {number(high, places).text}"

@@ -6,53 +6,42 @@ from typing import Any
 
 from benchlab.io.study_values import DesignValues, SampleValues
 from benchlab.report.document import Cell, Column, Table, cut
-from benchlab.report.rounding import NONE, count, number, words
-from benchlab.report.study.report import StudyReport, error_of, mean_of, sd_of, simulated_of
+from benchlab.report.rounding import count, number, words
+from benchlab.report.study.report import StudyReport, error_of, mean_of, sd_of, simulated_of, span_text
 from benchlab.stats.comparison_json import mean_interval
 
 
 def designs_table(report: StudyReport) -> Table:
-    """A row a design: what was measured, what was simulated, and what the paper published of it."""
-    known = any(report.published_of(design) for design in report.values.designs)
+    """A row a design: what was measured, and what was simulated."""
     columns = (
         Column("design", "design", False), Column("tw_mm"), Column("slw_mm"), Column("samples", "n"), Column("cycles", "cycles"),
         Column("mean_deg", "mean θ (°)"), Column("sd_deg", "SD (°)"), Column("mean_low_deg"), Column("mean_high_deg"),
-        Column("", "95 % interval (°)"), Column("simulated_deg", "simulated (°)"),
-        Column("error_deg", "simulated − measured (°)"), Column("published_deg"), Column("published_sd_deg"),
-        Column("", "paper: measured, mean ± SD (°)" * known), Column("published_fem_deg", "paper: FEM (°)" * known),
+        Column("", f"{report.percent} interval of mean (°)"), Column("simulated_deg", "simulated (°)"),
+        Column("error_deg", "simulated − measured (°)"),
     )  # fmt: skip
     sources = list(
         dict.fromkeys(cut(d.simulated.source, 120) for d in report.values.designs if d.simulated is not None)
     )
-    notes = [
-        f"θ at {report.values.pressure_MPa:g} MPa. n: samples, each counted once with the mean of its cycles. SD: between samples."
-    ]
+    notes = ["n: samples, each counted once with the mean of its cycles. SD: between samples."]
     if sources:
         notes.append(f"Simulated: {'; '.join(sources[:4])}{'; …' * (len(sources) > 4)}.")
-    if known:
-        notes.append("paper: published for a design of the same dimensions at the same pressure, not measured here.")
     rows = tuple(_design_row(report, design) for design in report.values.designs)
-    return Table("designs", "The designs.", columns, rows, " ".join(notes))
+    caption = f"Bending angle θ of each design at {report.values.pressure_MPa:g} MPa."
+    return Table("designs", caption, columns, rows, " ".join(notes))
 
 
 def _design_row(report: StudyReport, design: DesignValues) -> tuple[Cell, ...]:
     places = report.places
-    mean, sd, paper = mean_of(design), sd_of(design), report.published_of(design)
+    mean, sd = mean_of(design), sd_of(design)
     group = _group(report, design.name)
-    low, high = (mean_interval(group, 0.95) if group is not None else None) or (None, None)
+    low, high = (mean_interval(group, report.confidence) if group is not None else None) or (None, None)
     shell: Any = design.shell
-    measured = None if paper is None else paper.measured_angle_deg
-    spread = None if paper is None else paper.measured_sd_deg
     return (
         words(design.name, 40), number(None if shell is None else shell.window_width_mm, 1),
         number(None if shell is None else shell.strip_width_mm, 1),
         count(len(design.counted)), count(sum(len(sample.cycles) for sample in design.counted)),
         number(mean, places), number(sd, places), number(low, places), number(high, places),
-        Cell(None, NONE if low is None else f"{number(low, places).text} to {number(high, places).text}"),
-        number(simulated_of(design), places), number(error_of(design), places),
-        number(measured, 1), number(spread, 1),
-        Cell(None, NONE if measured is None else f"{measured:.1f}" + ("" if spread is None else f" ± {spread:.1f}")),
-        number(None if paper is None else paper.fem_angle_deg, 1),
+        Cell(None, span_text(low, high, places)), number(simulated_of(design), places), number(error_of(design), places),
     )  # fmt: skip
 
 
@@ -64,13 +53,13 @@ def _group(report: StudyReport, name: str) -> Any:
 def samples_table(report: StudyReport) -> Table:
     """A row a sample, also those that do not count, with why."""
     columns = (
-        Column("design", "design", False), Column("sample", "sample", False), Column("cycles", "cycles"),
+        Column("design"), Column("sample", "sample", False), Column("cycles", "cycles"),
         Column("angle_deg", "θ, mean of cycles (°)"), Column("cycle_sd_deg", "SD of cycles (°)"),
         Column("recordings", "recordings", False), Column("note", "note", False),
     )  # fmt: skip
     rows = [_sample_row(report, design, sample) for design in report.values.designs for sample in design.samples]
     caption = f"Every sample: θ at {report.values.pressure_MPa:g} MPa."
-    return Table("samples", caption, columns, tuple(rows))
+    return Table("samples", caption, columns, tuple(rows), by="design")
 
 
 def _sample_row(report: StudyReport, design: DesignValues, sample: SampleValues) -> tuple[Cell, ...]:

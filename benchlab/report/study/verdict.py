@@ -1,116 +1,164 @@
-"""The words at the head of a report: do the designs differ, how well do they repeat, how well were they foretold."""
+"""The head of a report: what was found, in a few large numbers and in words."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
-from benchlab.report.document import Section, Words, cut
+from benchlab.report.document import Section, Tile, Tiles, Words, cut
 from benchlab.report.rounding import number
-from benchlab.report.study.report import ComparedSet, StudyReport, error_of
+from benchlab.report.study.published import paper_words
+from benchlab.report.study.report import ComparedSet, StudyReport, error_of, mean_of, name_of
 from benchlab.stats.comparison import Comparison
 from benchlab.stats.pairs import Pair
-from benchlab.stats.wording import p_equals, verdict
+from benchlab.stats.repeatability import FACTOR
+from benchlab.stats.wording import p_equals
 
 _MOST_PAIRS = 6
 
 
 def verdict_section(report: StudyReport) -> Section:
-    """One paragraph a set; then repeatability, simulation, and what is missing."""
-    blocks = [Words(_of_set(one), "lead") for one in report.compared]
-    for text in (_repeatability(report), _simulation(report)):
-        if text:
-            blocks.append(Words(text, "lead"))
-    blocks += [Words(text, "warning") for text in _missing(report)]
-    return Section("Verdict", tuple(blocks))
+    """Large numbers; then a paragraph a set, and on repeatability, simulation, the paper, and what is missing."""
+    tiles = tuple(_tiles(report))
+    return Section("Verdict", (*[Tiles(tiles)] * bool(tiles), *verdict_words(report)))
 
 
-def name_of(one: ComparedSet) -> str:
-    """The title of a set, cut."""
-    return cut(one.chosen.title, 70)
+def verdict_words(report: StudyReport) -> list[Words]:
+    """The verdict in words alone."""
+    found = [Words(_of_set(one), "lead", f"{name_of(one)}.") for one in report.compared]
+    others = (
+        ("Repeatability.", _repeatability(report)),
+        ("Simulation.", _simulation(report)),
+        ("The paper.", paper_words(report)),
+    )
+    found += [Words(text, "lead", head) for head, text in others if text]
+    return found + [Words(text, "warning") for text in _missing(report)]
 
 
-def pair_name(pair: Pair, length: int = 30) -> str:
-    """Two designs as words of a sentence."""
-    return f"{cut(pair.a, length)} and {cut(pair.b, length)}"
+def _tiles(report: StudyReport) -> Iterator[Tile]:
+    places, found = report.places, report.whole.found
+    means = [(mean, design.name) for design in report.values.designs if (mean := mean_of(design)) is not None]
+    if means:
+        (low, first), (high, last) = min(means), max(means)
+        value = (
+            f"{number(high, places).text}°"
+            if len(means) == 1
+            else f"{number(low, places).text} to {number(high, places).text}°"
+        )
+        ends = cut(last, 24) if len(means) == 1 else f"{cut(first, 24)} to {cut(last, 24)}"
+        yield Tile(value, f"mean angle at {report.values.pressure_MPa:g} MPa", ends)
+    if found is not None:
+        limit = number(FACTOR * found.repeatability.sample_sd, places).text
+        yield Tile(
+            f"± {number(found.repeatability.sample_sd, places).text}°", "SD between samples of a design",
+            f"two samples differ by less than {limit}° in 95 % of cases",
+        )  # fmt: skip
+        tested = [pair for pair in found.tukey if pair.p is not None]
+        if tested:
+            told = sum(_differ(pair, found) for pair in tested)
+            yield Tile(
+                f"{told} of {len(tested)}",
+                "pairs of designs told apart",
+                f"Tukey HSD at {1 - report.confidence:.3g}, all designs",
+            )
+    errors = _errors(report)
+    if errors:
+        yield Tile(
+            f"{number(_rms(errors), places).text}°",
+            "error of the simulation, RMS",
+            f"{_span(errors, places)}, {_many(len(errors))}",
+        )
 
 
 def _of_set(one: ComparedSet) -> str:
-    if one.found is None:
-        return f"{name_of(one)}: not compared. {one.reason}"
-    first = verdict(one.found)
-    return " ".join(filter(None, (f"{name_of(one)}: {first[0].lower()}{first[1:]}", _of_pairs(one.found))))
+    found = one.found
+    if found is None:
+        return f"Not compared: {one.reason}"
+    anova, welch = found.anova, found.welch
+    if anova.p is None:
+        return f"No test: {anova.reason}."
+    differ = anova.p < found.alpha
+    head = "The designs differ" if differ else "No difference between the designs is shown"
+    second = f"Welch {welch.reason}"
+    if welch.p is not None:
+        second = f"Welch {'agrees' if (welch.p < found.alpha) == differ else 'DISAGREES'}, {p_equals(welch.p, 0)}"
+    return " ".join(filter(None, (f"{head} (ANOVA {p_equals(anova.p, 0)}; {second}).", _of_pairs(found))))
 
 
 def _of_pairs(found: Comparison) -> str:
     """Which pairs Tukey's test tells apart, and which not."""
     tested = [pair for pair in found.tukey if pair.p is not None]
-    if not tested:
+    if len(tested) < 2:
         return ""
-    alike = [pair for pair in tested if pair.p is not None and pair.p >= found.alpha]
-    largest = max(pair.p for pair in tested if pair.p is not None)
+    alike = [pair for pair in tested if not _differ(pair, found)]
     if not alike:
-        every = "Its one pair differs" if len(tested) == 1 else f"Each of the {len(tested)} pairs differs"
-        return f"{every} (Tukey HSD, {'largest ' * (len(tested) > 1)}{p_equals(largest)})."
-    listed = "; ".join(f"{pair_name(pair)} ({p_equals(pair.p)})" for pair in alike[:_MOST_PAIRS])
+        largest = max(pair.p for pair in tested if pair.p is not None)
+        return f"Each of the {len(tested)} pairs differs too (Tukey HSD, largest {p_equals(largest)})."
+    if len(alike) == len(tested):
+        return f"Tukey HSD tells none of the {len(tested)} pairs apart."
+    listed = "; ".join(f"{cut(pair.a, 30)} and {cut(pair.b, 30)} ({p_equals(pair.p)})" for pair in alike[:_MOST_PAIRS])
     more = f"; and {len(alike) - _MOST_PAIRS} more" if len(alike) > _MOST_PAIRS else ""
-    differ = len(tested) - len(alike)
-    return f"Tukey HSD tells {differ} of {len(tested)} pairs apart; not shown to differ: {listed}{more}."
+    return (
+        f"Tukey HSD tells {len(tested) - len(alike)} of {len(tested)} pairs apart; not shown to differ: {listed}{more}."
+    )
+
+
+def _differ(pair: Pair, found: Comparison) -> bool:
+    return pair.p is not None and pair.p < found.alpha
 
 
 def _repeatability(report: StudyReport) -> str:
     found = report.whole.found
     if found is None:
         return ""
-    places = report.places
-    own, limit = found.repeatability.sample_sd, 2.8 * found.repeatability.sample_sd
+    places, repeat = report.places, found.repeatability
     spreads = [group.sd for group in found.groups if group.sd is not None]
-    text = (
-        f"Repeatability: samples of one design scatter with SD {number(own, places).text}° about its mean (pooled; "
-        f"{number(min(spreads), places).text} to {number(max(spreads), places).text}° by design), so two samples of one design differ "
-        f"by less than {number(limit, places).text}° in 95 % of cases."
+    by_design = f"; {number(min(spreads), places).text} to {number(max(spreads), places).text}° by design" * (
+        len(spreads) > 1
     )
-    if found.repeatability.replicate == "cycle" and found.repeatability.pooled.s_r is not None:
-        text += f" Cycles of one sample scatter with SD {number(found.repeatability.pooled.s_r, places + 1).text}°."
+    text = (
+        f"Samples of one design scatter about its mean with SD {number(repeat.sample_sd, places).text}° (pooled{by_design}): two samples "
+        f"of a design differ by less than {number(FACTOR * repeat.sample_sd, places).text}° in 95 % of cases."
+    )
+    if repeat.replicate == "cycle" and repeat.pooled.s_r is not None:
+        text += f" Cycles of one sample scatter with SD {number(repeat.pooled.s_r, places + 1).text}°."
     return text
 
 
 def _simulation(report: StudyReport) -> str:
-    errors = [error for design in report.values.designs if (error := error_of(design)) is not None]
+    errors, places = _errors(report), report.places
     if not errors:
         return ""
-    places, many = report.places, len(errors) > 1
-    rmse = math.sqrt(sum(error * error for error in errors) / len(errors))
-    span = (
-        f"{_signed(min(errors), places)} to {_signed(max(errors), places)}°"
-        if many
-        else f"{_signed(errors[0], places)}°"
-    )
-    ends = (
-        f": mean |error| {number(sum(map(abs, errors)) / len(errors), places).text}°, RMSE {number(rmse, places).text}°"
-    )
-    return f"Simulated less measured angle: {span} ({len(errors)} design{'s' * many}){ends * many}."
+    text = f"Simulated less measured angle is {_span(errors, places)} ({_many(len(errors))})"
+    if len(errors) > 1:
+        mean = sum(map(abs, errors)) / len(errors)
+        text += f"; mean |error| {number(mean, places).text}°, RMSE {number(_rms(errors), places).text}°"
+    return f"{text}."
 
 
 def _missing(report: StudyReport) -> list[str]:
     values = report.values
-    told = [
-        (len(values.failures), "without a value", "failed or missing"),
-        (len(values.left_out), "left out", "by the study file"),
-    ]
-    parts = [f"{count} {what} ({how})" for count, what, how in told if count]
+    told = (
+        (len(values.failures), "without a value (failed or missing)"),
+        (len(values.left_out), "left out by the study file"),
+    )
+    parts = [f"{count} {what}" for count, what in told if count]
     return [f"Not everything counts: {'; '.join(parts)}. See “Left out and failed”."] if parts else []
 
 
-def _signed(value: float, places: int) -> str:
-    text = number(value, places).text
-    return f"+{text}" if value > 0 and text.strip("0.") else text
+def _errors(report: StudyReport) -> list[float]:
+    return [error for design in report.values.designs if (error := error_of(design)) is not None]
 
 
-def joined(items: Sequence[str], most: int = 5) -> str:
-    """Items as words; of many, the first.
+def _rms(errors: Sequence[float]) -> float:
+    return math.sqrt(sum(error * error for error in errors) / len(errors))
 
-    >>> joined(["a", "b", "c"], 2)
-    'a, b and 1 more'
-    """
-    return ", ".join(items[:most]) + (f" and {len(items) - most} more" if len(items) > most else "")
+
+def _span(errors: Sequence[float], places: int) -> str:
+    signed = [f"+{text}" if error > 0 and text.strip("0.") else text for error in (min(errors), max(errors))
+              if (text := number(error, places).text)]  # fmt: skip
+    return f"{signed[0]}°" if len(errors) == 1 else f"{signed[0]} to {signed[1]}°"
+
+
+def _many(designs: int) -> str:
+    return f"{designs} design{'s' * (designs != 1)}"

@@ -1,0 +1,156 @@
+"""Blocked force against pressure, as the paper's Fig. 3b: mean ± SD over actuators, each actuator as points, the line with its band."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from benchlab.force.curve import BlockedForce
+from benchlab.force.line import Estimate, ForceLine
+from benchlab.report.figures import DPI, figure_class
+from benchlab.report.panels import BAND, BLUE, GREY, dress
+from benchlab.report.wording import drawable
+from benchlab.stats.wording import p_equals
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+OTHER = "#D55E00"
+_MARKS = ("o", "s", "^", "D", "v", "P")
+_POINT = "#333333"
+
+
+def draw_force_figure(found: BlockedForce, drawn: bool = False) -> Figure:
+    """A figure with a title, the panel, and what was found as words below it. drawn: the title says that nothing was measured."""
+    lines = line_words(found)
+    foot = 0.72 + 0.2 * len(lines)
+    height = 4.3 + foot
+    figure = figure_class()(figsize=(6.4, height), dpi=DPI)
+    ax = figure.add_axes((0.72 / 6.4, (foot + 0.12) / height, 5.5 / 6.4, 3.75 / height))
+    plot_blocked_force(ax, found)
+    many = f"{len(found.actuators)} actuator{'s' * (len(found.actuators) != 1)}"
+    title = f"Blocked force of {many}" + (": drawn, not measured" if drawn else "")
+    figure.text(0.72 / 6.4, 1 - 0.27 / height, title, fontsize=12, fontweight="bold", parse_math=False)
+    for number, text in enumerate(lines):
+        figure.text(
+            0.72 / 6.4,
+            (0.14 + 0.2 * (len(lines) - 1 - number)) / height,
+            text,
+            fontsize=9,
+            color=GREY,
+            parse_math=False,
+        )
+    return figure
+
+
+def plot_blocked_force(
+    ax: Axes, found: BlockedForce, paper: tuple[float, float, float] | None = None, legend: bool = True
+) -> None:
+    """The panel. paper: pressure, mean and SD that were published."""
+    pressure, mean, sd = found.pressure_MPa, found.over_actuators_N, found.sd_N
+    if found.line is not None:
+        _plot_line(ax, found.line, float(pressure.max()))
+    step = float(np.diff(pressure).min()) if len(pressure) > 1 else 0.1 * float(pressure.max())
+    few = len(found.actuators) <= len(_MARKS)
+    aside = np.linspace(-0.16, 0.16, len(found.actuators)) * step if len(found.actuators) > 1 else np.zeros(1)
+    for i, name in enumerate(found.actuators):
+        label = drawable(name, 28) if few else "actuators" if i == 0 else None
+        ax.plot(pressure + aside[i], found.mean_N[i], _MARKS[i] if few else "o", color=_POINT, markerfacecolor="white", markersize=3.6,
+                markeredgewidth=0.8, linestyle="none", zorder=3, label=label)  # fmt: skip
+    several = np.isfinite(sd)
+    ax.plot(
+        pressure,
+        mean,
+        "_",
+        color="black",
+        markersize=11,
+        markeredgewidth=1.4,
+        zorder=5,
+        label=None if several.any() else "mean",
+    )
+    if several.any():
+        ax.errorbar(pressure[several], mean[several], yerr=sd[several], fmt="none", ecolor="black", elinewidth=1.1, capsize=3.5, zorder=5,
+                    label="mean ± 1 SD of actuators")  # fmt: skip
+    bound = found.lower_bound.any(axis=0)
+    if bound.any():
+        ax.plot(
+            pressure[bound], mean[bound], "^", color=OTHER, markersize=7, zorder=6, label="≥: load cell at its limit"
+        )
+    if paper is not None:
+        at, published, spread = paper
+        ax.errorbar([at], [published], yerr=[spread], fmt="D", color=OTHER, markerfacecolor="white", markersize=5, capsize=3.5, zorder=6,
+                    label=f"paper: {published:g} ± {spread:g} N")  # fmt: skip
+    ax.set_xlim(0, float(pressure.max()) + 0.7 * step)
+    low = float(np.nanmin(found.mean_N))
+    ax.set_ylim(bottom=None if low < 0 else 0)
+    dress(ax, "pressure (MPa)", "blocked force (N)")
+    if legend:
+        for text in ax.legend(loc="upper left", fontsize=8.5, frameon=False).get_texts():
+            text.set_parse_math(False)
+
+
+def line_words(found: BlockedForce) -> list[str]:
+    """The line, its linearity and what is not known of the fixture, in words."""
+    lever = (
+        "lever arm of the fixture: not stated"
+        if found.lever_arm_mm is None
+        else f"lever arm of the fixture: {found.lever_arm_mm:g} mm"
+    )
+    if found.line is None:
+        return [f"No line: {found.line_reason}.", lever]
+    line = found.line
+    words = [f"F = a + b·p:  {equation(line)}", _quality(line), linearity_words(line), lever]
+    return [text for text in words if text]
+
+
+def equation(line: ForceLine) -> str:
+    """`a = 0.10 N (−0.90 to 1.10), b = 107 N/MPa (103 to 111)`."""
+    return f"a = {_ends(line.intercept_N, 'N')}, b = {_ends(line.slope_N_per_MPa, 'N/MPa')}"
+
+
+def linearity_words(line: ForceLine) -> str:
+    """The tests of linearity."""
+    straight = line.linearity
+    if straight is None:
+        return "linearity: not tested, which needs two actuators and three pressures"
+    a, b = straight.df
+    bow = (
+        f"; bow in the middle {_ends(straight.bow_N, 'N')}, {p_equals(straight.bow_p)}"
+        if np.isfinite(straight.bow_p)
+        else ""
+    )
+    return f"lack of fit F({a}, {b}) = {straight.F:.2f}, {p_equals(straight.p)}{bow}"
+
+
+def _quality(line: ForceLine) -> str:
+    sd = (
+        ""
+        if not np.isfinite(line.residual_sd_N)
+        else f", residual SD {line.residual_sd_N:.2g} N about each actuator's own line"
+    )
+    return f"R² {line.r_squared:.4f}{sd}; through the origin b = {_ends(line.through_origin_N_per_MPa, 'N/MPa')}"
+
+
+def _ends(one: Estimate, unit: str) -> str:
+    if not np.isfinite(one.low):
+        return f"{_short(one.value)} {unit}"
+    return f"{_short(one.value)} {unit} ({_short(one.low)} to {_short(one.high)})"
+
+
+def _short(value: float) -> str:
+    digits = 1 if abs(value) >= 10 else 2
+    text = f"{value:.{digits}f}"
+    return (text.lstrip("-") if not text.strip("-0.") else text).replace("-", "−")
+
+
+def _plot_line(ax: Axes, line: ForceLine, largest: float) -> None:
+    at = np.linspace(0, largest * 1.04, 80)
+    mean, low, high = line.at(at)
+    style: dict[str, Any] = {"color": BLUE, "linewidth": 1.5, "zorder": 2}
+    inside = at >= line.pressure_MPa.min()
+    ax.plot(at[inside], mean[inside], label="line", **style)
+    ax.plot(at[~inside], mean[~inside], linestyle=(0, (3, 2)), **style)
+    if np.isfinite(low).all():
+        ax.fill_between(at, low, high, color=BAND, linewidth=0, zorder=1, label=f"{100 * line.confidence:g} % band")
