@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
 from benchlab.force.loading import Loading
@@ -17,24 +18,28 @@ from benchlab.units import FloatArray
 FLAT_SHARE = 0.05
 """Readings within this share of the loading's height over the lowest of a gap may be of the rest."""
 
+FLAT = 0.01
+"""A rest is flat where half of its readings lie within this share of the loading's height."""
+
 
 @dataclass(frozen=True)
 class Baseline:
     """Zero of a load cell. place: (R,) where the rests are, in readings from the first; level_N, sd_N: (R,) each with its standard
-    deviation. noise_N: standard deviation of single readings in the rests. slope_N_per_s: of the straight line through all rests, NaN for
-    fewer than two and where no time is known.
+    deviation; flat: (R,) whether the force stays there. noise_N: standard deviation of single readings in the rests. slope_N_per_s: of the
+    straight line through all rests, NaN for fewer than two and where no time is known.
     """
 
     place: FloatArray
     level_N: FloatArray
     sd_N: FloatArray
+    flat: NDArray[np.bool_]
     noise_N: float
     slope_N_per_s: float
 
     def at(self, place: float) -> tuple[float, float]:
         """Level and standard deviation at a place; straight between two rests, level before the first and behind the last.
 
-        >>> zero = Baseline(np.array([0.0, 10.0]), np.array([1.0, 2.0]), np.array([0.3, 0.4]), 0.1, np.nan)
+        >>> zero = Baseline(np.array([0.0, 10.0]), np.array([1.0, 2.0]), np.array([0.3, 0.4]), np.ones(2, bool), 0.1, np.nan)
         >>> zero.at(5.0), zero.at(99.0)
         ((1.5, 0.25), (2.0, 0.4))
         """
@@ -54,19 +59,32 @@ def find_baseline(force_N: FloatArray, time_s: FloatArray | None, loadings: Sequ
 
     A gap runs from half way down to half way up again. Its rest is what lies, smoothed, within 5 % of the height of the lower neighbour
     (or six times the noise) of the gap's lowest; its level is the mean of that half of these readings that lies closest together, so
-    that neither the end of a slow fall nor a short swing below zero counts. Gaps that the record cuts, and those that stay high, are
-    no rests. Raises ValueError where there is none.
+    that neither the end of a slow fall nor a short swing below zero counts. Where that half is wider than 1 % of the height (and more
+    than noise is) the force does not rest, and the level is the gap's lowest. Gaps that the record cuts are no rests.
+    Raises ValueError where there is none.
     """
     noise = noise_sd(force_N)
-    rests = [found for gap in _gaps(loadings, len(force_N)) if (found := _rest(force_N, *gap, noise)) is not None]
+    gaps = _gaps(loadings, len(force_N))
+    rests = [_rest(force_N, *gap, noise) for gap in gaps if gap[1] > gap[0]]
     if not rests:
         raise ValueError("a record without a rest")
-    place, level, sd = (np.array(column) for column in zip(*((p, m, s) for p, m, s, _ in rests)))
-    about = np.concatenate([values for *_, values in rests])
+    place, level, sd, flat = (np.array([getattr(r, name) for r in rests]) for name in ("place", "level", "sd", "flat"))
+    about = np.concatenate([rest.about for rest in rests if rest.flat] or [np.full(1, noise)])
     slope = math.nan
     if time_s is not None and len(place) > 1:
         slope = float(np.polyfit(np.interp(place, np.arange(len(time_s)), time_s), level, 1)[0])
-    return Baseline(place, level, sd, float(MAD_TO_SD * np.median(np.abs(about))), slope)
+    return Baseline(place, level, sd, flat, float(MAD_TO_SD * np.median(np.abs(about))), slope)
+
+
+@dataclass(frozen=True)
+class _Rest:
+    """about: readings about the level."""
+
+    place: float
+    level: float
+    sd: float
+    flat: bool
+    about: FloatArray
 
 
 def _gaps(loadings: Sequence[Loading], n: int) -> list[tuple[int, int, tuple[Loading, ...]]]:
@@ -78,22 +96,20 @@ def _gaps(loadings: Sequence[Loading], n: int) -> list[tuple[int, int, tuple[Loa
     return edges[1 if cut_first else 0 : -1 if cut_last else None]
 
 
-def _rest(
-    force_N: FloatArray, first: int, stop: int, beside: tuple[Loading, ...], noise: float
-) -> tuple[float, float, float, FloatArray] | None:
-    """Place, level, standard deviation of the level, and readings about the level; None where there is no reading."""
+def _rest(force_N: FloatArray, first: int, stop: int, beside: tuple[Loading, ...], noise: float) -> _Rest:
     part = force_N[first:stop]
-    if not len(part):
-        return None
     window = max(1, len(part) // 10) | 1
     smooth = uniform_filter1d(part, window, mode="nearest")
-    height = min(float(force_N[c.rise : c.fall + 1].max()) for c in beside) - float(smooth.min())
-    inside = np.flatnonzero(smooth <= smooth.min() + max(FLAT_SHARE * height, 6 * noise / window**0.5))
+    lowest = float(smooth.min())
+    height = min(float(force_N[c.rise : c.fall + 1].max()) for c in beside) - lowest
+    inside = np.flatnonzero(smooth <= lowest + max(FLAT_SHARE * height, 6 * noise / window**0.5))
     values = part[inside]
     half = shortest_half(values)
-    kept = (values >= half[0]) & (values <= half[-1])
-    near = values[np.abs(values - half.mean()) <= max(3 * (half[-1] - half[0]), 1e-300)] if len(half) > 1 else values
-    level = float(near.mean())
+    width = float(half[-1] - half[0])
+    if width > max(FLAT * height, 3 * noise):
+        return _Rest(first + float(np.argmin(smooth)), lowest, width, False, np.empty(0))
+    near = values[np.abs(values - half.mean()) <= 3 * width] if width > 0 else half
     spread = sd_of_mean(near)
-    sd = spread if math.isfinite(spread) else noise
-    return float(first + inside[kept].mean()), level, sd, near - level
+    kept = inside[(values >= half[0]) & (values <= half[-1])]
+    level = float(near.mean())
+    return _Rest(first + float(kept.mean()), level, spread if math.isfinite(spread) else noise, True, near - level)

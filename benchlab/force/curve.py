@@ -29,9 +29,9 @@ class ActuatorCycles:
 class BlockedForce:
     """The blocked force of m actuators at K pressures.
 
-    pressure_MPa: (K,) growing. mean_N, cycle_sd_N: (m, K) mean and standard deviation of an actuator's cycles, NaN where it has none, or one.
-    cycles: (m, K) how many. lower_bound: (m, K) whether one of them is. line: None where `line_reason` says why. tolerance_MPa: within
-    which pressures are of one step. lever_arm_mm: from the clamp to where the force acts, None where nobody has told.
+    pressure_MPa: (K,) growing. mean_N, cycle_sd_N: (m, K) mean and standard deviation of an actuator's cycles, NaN where it has none,
+    or one. cycles: (m, K) how many. lower_bound: (m, K) whether one of them is. line: None where `line_reason` says why.
+    tolerance_MPa: within which pressures are of one step. lever_arm_mm: from the clamp to where the force acts, None where nobody has told.
     """
 
     actuators: tuple[str, ...]

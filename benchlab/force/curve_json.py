@@ -6,6 +6,7 @@ import math
 from dataclasses import asdict
 from typing import Any
 
+from benchlab.force.baseline import Baseline
 from benchlab.force.curve import BlockedForce, moment_N_mm
 from benchlab.force.line import Estimate, ForceLine
 from benchlab.force.peaks import ForcePeak, ForceRecord
@@ -35,18 +36,30 @@ def record_json(record: ForceRecord) -> dict[str, Any]:
     zero = record.baseline
     return {
         "contact": record.contact,
+        "largest_reading_N": _number(record.high_N),
+        "note": record.notes[-1] if record.notes else None,
         "clipped_at_N": record.clipped_at_N,
-        "baseline": None if zero is None else {
-            "first_N": float(zero.level_N[0]), "last_N": float(zero.level_N[-1]), "low_N": float(zero.level_N.min()),
-            "high_N": float(zero.level_N.max()), "slope_N_per_s": _number(zero.slope_N_per_s), "rests": len(zero.level_N),
-            "sd_N": float(zero.sd_N.max()), "noise_N": zero.noise_N,
-        },
+        "baseline": None if zero is None else _baseline(zero),
         "peaks": [peak_json(peak) for peak in record.peaks],
-    }  # fmt: skip
+    }
 
 
 def peak_json(peak: ForcePeak) -> dict[str, Any]:
     return {name: _number(value) if isinstance(value, float) else value for name, value in asdict(peak).items()}
+
+
+def _baseline(zero: Baseline) -> dict[str, Any]:
+    return {
+        "first_N": float(zero.level_N[0]),
+        "last_N": float(zero.level_N[-1]),
+        "low_N": float(zero.level_N.min()),
+        "high_N": float(zero.level_N.max()),
+        "slope_N_per_s": _number(zero.slope_N_per_s),
+        "sd_N": float(zero.sd_N.max()),
+        "noise_N": zero.noise_N,
+        "rests": len(zero.level_N),
+        "flat_rests": int(zero.flat.sum()),
+    }
 
 
 def _pressure(found: BlockedForce, j: int) -> dict[str, Any]:

@@ -40,8 +40,8 @@ class Linearity:
 @dataclass(frozen=True)
 class ForceLine:
     """F = intercept + slope·p of the mean actuator. through_origin: slope of F = slope·p. residual_sd_N: of an actuator's means about
-    its own line, with m·(K − 2) degrees of freedom. r_squared: of the means about the common line. linearity: None for fewer than two actuators
-    or three pressures. pressure_MPa: (K,) that it is from."""
+    its own line, with m·(K − 2) degrees of freedom. r_squared: of the means about the common line. linearity: None for fewer than two
+    actuators or three pressures. pressure_MPa: (K,) that it is from. intercepts, slopes: (m,) of each actuator's own line."""
 
     pressure_MPa: FloatArray
     intercept_N: Estimate

@@ -46,7 +46,7 @@ class Loading:
 
 
 def find_loadings(values: FloatArray) -> tuple[Loading, ...]:
-    """The loadings of a trace (n,) of finite values, in order; none where it does not stand out of its noise.
+    """The loadings of a trace (n,), NaN where it is not known, in order; none where it does not stand out of its noise.
 
     Tops are those whose prominence (height over the higher of the two valleys that part them from higher ones) exceeds ten times the
     noise and 2 % of the range. The first pass finds the usual length of a loading, the second the smaller ones, in the running mean.
@@ -55,6 +55,9 @@ def find_loadings(values: FloatArray) -> tuple[Loading, ...]:
     >>> [(c.rise, c.fall) for c in find_loadings(trace)]
     [(10, 19), (30, 39)]
     """
+    known = np.flatnonzero(np.isfinite(values))
+    if len(known) < len(values):
+        return tuple(in_record(cycle, known) for cycle in find_loadings(values[known]))
     if len(values) < 3 or np.ptp(values) == 0:
         return ()
     clean = median_filter(values, 3, mode="nearest") if len(values) > 30 else values
@@ -68,6 +71,12 @@ def find_loadings(values: FloatArray) -> tuple[Loading, ...]:
     tops = _tops(smooth, max(TIMES_NOISE * noise_sd(values) / window**0.5, LEAST_SHARE * np.ptp(smooth)))
     tops = _parted(smooth, tops)
     return _loadings(smooth, tops)
+
+
+def in_record(cycle: Loading, known: IntArray) -> Loading:
+    """A loading among the known readings (k,) of a record in the numbers of the whole record."""
+    start, rise, fall, last = known[[cycle.start, cycle.rise, cycle.fall, cycle.stop - 1]].tolist()
+    return Loading(start, rise, fall, last + 1, cycle.cut)
 
 
 def half_height(values: FloatArray, base: float) -> tuple[int, int]:

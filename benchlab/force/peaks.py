@@ -13,7 +13,7 @@ from scipy.signal import savgol_coeffs, savgol_filter
 
 from benchlab.force.baseline import Baseline, find_baseline
 from benchlab.force.clipping import clipping_value, is_clipped
-from benchlab.force.loading import TIMES_NOISE, Loading, find_loadings, half_height
+from benchlab.force.loading import TIMES_NOISE, Loading, find_loadings, half_height, in_record
 from benchlab.units import FloatArray
 
 RESOLVED_SHARE = 20
@@ -98,7 +98,7 @@ def peaks_of(
     notes = []
     if given and max(p.peak_N for p in peaks) < TIMES_NOISE * zero.noise_N:
         notes = [NO_CONTACT, f"{NO_CONTACT}: no peak stands out of the noise of {zero.noise_N:.2g} N"]
-    back = [_in_record(cycle, known) for cycle in within]
+    back = [in_record(cycle, known) for cycle in within]
     return ForceRecord(tuple(peaks), tuple(back), zero, low, high, clip, tuple(notes))
 
 
@@ -160,12 +160,6 @@ def _with_gaps(peak: ForcePeak, cycle: Loading, known: np.ndarray) -> ForcePeak:
         return peak
     words = f"{missing} readings are missing while loaded"
     return replace(peak, lower_bound=True, why="; ".join(filter(None, (peak.why, words))))
-
-
-def _in_record(cycle: Loading, known: np.ndarray) -> Loading:
-    """A loading among the known readings in the numbers of the whole record."""
-    start, rise, fall, last = known[[cycle.start, cycle.rise, cycle.fall, cycle.stop - 1]].tolist()
-    return Loading(start, rise, fall, last + 1, cycle.cut)
 
 
 def _renumbered(cycle: Loading, known: np.ndarray) -> Loading:

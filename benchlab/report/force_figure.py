@@ -25,8 +25,8 @@ _POINT = "#333333"
 def draw_force_figure(found: BlockedForce, drawn: bool = False) -> Figure:
     """A figure with a title, the panel, and what was found as words below it. drawn: the title says that nothing was measured."""
     lines = line_words(found)
-    foot = 0.72 + 0.2 * len(lines)
-    height = 4.3 + foot
+    foot = 0.6 + 0.2 * len(lines)
+    height = 4.25 + foot
     figure = figure_class()(figsize=(6.4, height), dpi=DPI)
     ax = figure.add_axes((0.72 / 6.4, (foot + 0.12) / height, 5.5 / 6.4, 3.75 / height))
     plot_blocked_force(ax, found)
@@ -87,7 +87,11 @@ def plot_blocked_force(
     ax.set_ylim(bottom=None if low < 0 else 0)
     dress(ax, "pressure (MPa)", "blocked force (N)")
     if legend:
-        for text in ax.legend(loc="upper left", fontsize=8.5, frameon=False).get_texts():
+        shown = dict(zip(*reversed(ax.get_legend_handles_labels())))
+        order = sorted(shown, key=lambda label: (label.startswith(("line", "95 %")), label not in found.actuators))
+        for text in ax.legend(
+            [shown[k] for k in order], order, loc="upper left", fontsize=8.5, frameon=False
+        ).get_texts():
             text.set_parse_math(False)
 
 
@@ -101,7 +105,14 @@ def line_words(found: BlockedForce) -> list[str]:
     if found.line is None:
         return [f"No line: {found.line_reason}.", lever]
     line = found.line
-    words = [f"F = a + b·p:  {equation(line)}", _quality(line), linearity_words(line), lever]
+    origin = f"F = b·p: b = {_ends(line.through_origin_N_per_MPa, 'N/MPa')}"
+    words = [
+        f"F = a + b·p: {equation(line)}; {100 * line.confidence:g} % intervals",
+        origin,
+        _quality(line),
+        linearity_words(line),
+        lever,
+    ]
     return [text for text in words if text]
 
 
@@ -130,7 +141,7 @@ def _quality(line: ForceLine) -> str:
         if not np.isfinite(line.residual_sd_N)
         else f", residual SD {line.residual_sd_N:.2g} N about each actuator's own line"
     )
-    return f"R² {line.r_squared:.4f}{sd}; through the origin b = {_ends(line.through_origin_N_per_MPa, 'N/MPa')}"
+    return f"R² {line.r_squared:.4f}{sd}"
 
 
 def _ends(one: Estimate, unit: str) -> str:
