@@ -3,32 +3,39 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-
-import numpy as np
-from scipy import special
+from dataclasses import dataclass
 
 from benchlab.stats.groups import Group
-from benchlab.stats.noncentral import intervals_of_delta
-from benchlab.units import FloatArray
+from benchlab.stats.noncentral import interval_of_delta
 
 
-def hedges_g(pairs: Sequence[tuple[Group, Group]], confidence: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """(g, low, high), each a value a pair, of b − a; NaN where the pair has no scatter.
+@dataclass(frozen=True)
+class EffectSize:
+    """Hedges' g of b − a with its interval."""
 
-    g = J·d with J = Γ(m/2)/(√(m/2)·Γ((m−1)/2)), m = n_a + n_b − 2 (Hedges 1981, J. Educ. Stat. 6:107); its interval from the
-    noncentral t distribution, with the same J.
+    g: float
+    low: float
+    high: float
+
+
+def hedges_g(a: Group, b: Group, confidence: float) -> EffectSize | None:
+    """g = J·d with J = Γ(m/2)/(√(m/2)·Γ((m−1)/2)), m = n_a + n_b − 2 (Hedges 1981, J. Educ. Stat. 6:107); its interval from the
+    noncentral t distribution, with the same J. None where the pair has no scatter, or fewer than four samples.
+
+    >>> from decimal import Decimal
+    >>> import numpy as np
+    >>> from benchlab.stats.groups import group_of
+    >>> a, b = (group_of(name, np.array(values), Decimal(0)) for name, values in (("a", [1.0, 2, 3]), ("b", [3.0, 4, 5])))
+    >>> found = hedges_g(a, b, 0.95)
+    >>> round(found.g, 4), round(found.low, 4), round(found.high, 4)
+    (1.5958, -0.1196, 3.2069)
     """
-    difference = np.array([b.deviation - a.deviation for a, b in pairs])
-    m = np.array([float(a.n + b.n - 2) for a, b in pairs])
-    pooled = np.array([math.sqrt((a.ss + b.ss) / (a.n + b.n - 2)) if a.n + b.n > 2 else 0.0 for a, b in pairs])
-    root = np.array([math.sqrt(1 / a.n + 1 / b.n) for a, b in pairs])
-    found = np.full((3, len(pairs)), np.nan)
-    kept = (pooled > 0) & (m > 1)
-    if kept.any():
-        m, root = m[kept], root[kept]
-        d = difference[kept] / pooled[kept]
-        J = np.exp(special.gammaln(m / 2) - special.gammaln((m - 1) / 2)) / np.sqrt(m / 2)
-        low, high = intervals_of_delta(d / root, m, confidence)
-        found[:, kept] = J * d, J * low * root, J * high * root
-    return found[0], found[1], found[2]
+    m = a.n + b.n - 2
+    ss = a.ss + b.ss
+    if m < 2 or ss == 0:
+        return None
+    d = (b.deviation - a.deviation) / math.sqrt(ss / m)
+    root = math.sqrt(1 / a.n + 1 / b.n)
+    J = math.exp(math.lgamma(m / 2) - math.lgamma((m - 1) / 2)) / math.sqrt(m / 2)
+    low, high = interval_of_delta(d / root, m, confidence)
+    return EffectSize(J * d, J * low * root, J * high * root)

@@ -14,8 +14,8 @@ from benchlab.stats.groups import Group
 from benchlab.stats.studentized_range import FLOOR, StudentizedRange
 from benchlab.units import FloatArray
 
-MOST_GROUPS = 100
-"""Groups up to which all pairs are compared (4950 pairs)."""
+MOST_GROUPS = 40
+"""Groups up to which all pairs are compared (780 pairs)."""
 
 
 @dataclass(frozen=True)
@@ -87,19 +87,18 @@ def _compared(
     q = math.sqrt(2) * np.abs(difference) / np.where(defined, error, 1.0)
     p = distribution.beyond(q, df)
     half = _critical(distribution, 1 - confidence, df) * error / math.sqrt(2)
-    g, g_low, g_high = hedges_g(pairs, confidence)
     found = []
     for i, (a, b) in enumerate(pairs):
-        low, high = float(difference[i] - half[i]), float(difference[i] + half[i])
-        effect = {
-            name: float(x[i]) if np.isfinite(x[i]) else None
-            for name, x in (("g", g), ("g_low", g_low), ("g_high", g_high))
-        }
         test: dict[str, float | None] = dict.fromkeys(("low", "high", "p", "p_below", "standard_error", "df"))
         if defined[i]:
-            test.update(low=low, high=high, p=float(p[i]), p_below=FLOOR if p[i] < FLOOR else None)
+            test.update(low=float(difference[i] - half[i]), high=float(difference[i] + half[i]))
+            test.update(p=float(p[i]), p_below=FLOOR if p[i] < FLOOR else None)
             test.update(standard_error=float(error[i]), df=float(df[i]))
-        found.append(Pair(a=a.name, b=b.name, difference=float(difference[i]), reason=reasons[i], **test, **effect))
+        effect = hedges_g(a, b, confidence)
+        g, g_low, g_high = (None, None, None) if effect is None else (effect.g, effect.low, effect.high)
+        found.append(
+            Pair(a.name, b.name, float(difference[i]), **test, g=g, g_low=g_low, g_high=g_high, reason=reasons[i])
+        )
     return tuple(found)
 
 

@@ -69,7 +69,7 @@ def anova_power(difference: float, n: float, groups: int, alpha: float) -> float
 def pair_power(
     difference: float, n: float, groups: int, alpha: float, distribution: StudentizedRange | None = None
 ) -> float:
-    """Power to see one pair, `difference` standard deviations apart, in Tukey's test: |t| beyond q/√2, t noncentral.
+    """Power to see one pair, `difference` standard deviations apart, in Tukey's test and with its sign: t, noncentral, beyond q/√2.
 
     >>> round(pair_power(1.5, 8, 2, 0.05), 4)
     0.7965
@@ -79,7 +79,7 @@ def pair_power(
     delta = abs(difference) * math.sqrt(n / 2)
     if delta > critical + 10 * math.sqrt(1 + critical**2 / (2 * b)):
         return 1.0  # scipy's noncentral t gives NaN out there
-    return float(2 - special.nctdtr(b, delta, critical) - special.nctdtr(b, -delta, critical))
+    return float(1 - special.nctdtr(b, delta, critical))
 
 
 def _of(power: Callable[[float, float], float], sd: float, n: float, difference: float | None) -> PowerOfTest:
