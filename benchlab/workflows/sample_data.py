@@ -18,6 +18,7 @@ from benchlab.io.video_writer import VideoWriter
 from benchlab.vision.picture import FloatArray
 from benchlab.vision.synthetic import Scene, draw_frames
 from benchlab.workflows.sample_data_readme import readme
+from benchlab.workflows.sample_force import force_files, force_rows
 from benchlab.workflows.sample_tensile import tensile_text
 
 Progress = Callable[[int, int | None], None]
@@ -80,14 +81,15 @@ def make_sample_data(out: Path, seed: int = 1, progress: Progress | None = None)
         rng = np.random.default_rng([seed, index])
         write_clip(out / clip.file, clip, rng, _shifted(progress, index * FRAMES, len(clips) * FRAMES))
         written.append(out / clip.file)
-    tables = {"truth.csv": truth_rows(clips), "truth_series.csv": series_rows(clips), "pressure_log.csv": log_rows()}
+    tables = {"truth.csv": truth_rows(clips), "truth_series.csv": series_rows(clips), "pressure_log.csv": log_rows(),
+              "truth_force.csv": force_rows(seed)}  # fmt: skip
     for name, rows in tables.items():
         _write_csv(out / name, rows)
     texts = sample_texts(clips, seed)
     for name, text in texts.items():
         (out / name).parent.mkdir(exist_ok=True)
         with written_whole(out / name) as temporary:
-            temporary.write_text(text, encoding="utf-8", newline="\n")
+            temporary.write_bytes(text if isinstance(text, bytes) else text.encode())
     return [*written, *(out / name for name in (*tables, *texts))]
 
 
@@ -109,9 +111,10 @@ def sample_clips(seed: int) -> tuple[SampleClip, ...]:
     return tuple(clips)
 
 
-def sample_texts(clips: Iterable[SampleClip], seed: int) -> dict[str, str]:
-    """The files beside the clips that are text of their own making, by their place in the folder."""
+def sample_texts(clips: Iterable[SampleClip], seed: int) -> dict[str, str | bytes]:
+    """The files beside the clips that are text of their own making, by their place in the folder; bytes where it is not UTF-8."""
     return {
+        **force_files(seed),
         "tensile_drawn.csv": tensile_text(seed),
         "README.md": readme(_design_rows(clips), CONCAVITY, seed),
     }

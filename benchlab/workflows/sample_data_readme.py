@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from benchlab.workflows.sample_force import drawn_words
+
 TEXT = """# Sample data: drawn, not filmed
 
 These 25 clips show no real actuator. They are drawn by benchlab, so that the bending angle in every frame is known
@@ -43,6 +45,11 @@ its ends.
   `pressure_kPa`. Drawn too.
 - `tensile_drawn.csv`: a tensile test as a testing machine exports it, for `benchlab fit-material`. Drawn: a Yeoh film whose
   coefficients, and the noise, stand in its first line.
+- `force/tw3_slw10_a1.csv`, `_a2`, `_a3`: blocked force of three actuators as three machines export it (English in N, German in kN,
+  imperial in lbf), for `benchlab force`. Drawn: forces linear in pressure, at 0.35 MPa from a normal distribution with the published
+  37.72 ± 1.56 N of three actuators ({force}); ten steps from 0.035 to 0.35 MPa, five cycles each. Our choice: cycles scatter by 0.15 N, the
+  load cell's zero is off and drifts, noise 0.04 N. Each says in its preamble that it is drawn.
+- `truth_force.csv`, one row per cycle of these: `file`, `cycle`, `pressure_MPa`, `peak_N`, without noise and zero.
 
 The same seed draws the same pictures; the files are the same bytes only with the same version of the encoder.
 """
@@ -57,4 +64,6 @@ def readme(designs: Iterable[tuple[str, float, float, float, float]], concavity:
         f"| {name} | {mean:.1f} ± {sd:.1f} | {got_mean:.1f} ± {got_sd:.1f} |"
         for name, mean, sd, got_mean, got_sd in designs
     )
-    return TEXT.format(rows=rows, concavity=concavity, seed="" if seed == 1 else f" --seed {seed}")
+    return TEXT.format(
+        rows=rows, concavity=concavity, force=drawn_words(seed), seed="" if seed == 1 else f" --seed {seed}"
+    )

@@ -14,6 +14,7 @@ from benchlab.io.recording import open_recording
 from benchlab.vision.synthetic import Scene, marker_truth
 from benchlab.workflows import sample_data
 from benchlab.workflows.sample_data import PUBLISHED_DEG, make_sample_data, sample_clips, series_rows, truth_rows
+from benchlab.workflows.sample_force import force_rows
 
 FOLDER = Path(__file__).resolve().parents[3] / "sample_data"
 SMALL = Scene(width=320, height=180, length_px=150.0, base_px=(60.0, 40.0), marker_radius_px=4.0, body_width_px=14.0)
@@ -92,6 +93,10 @@ def test_the_folder_holds_clips_tables_and_a_readme_that_say_they_are_drawn(smal
         "truth_series.csv",
         "pressure_log.csv",
         "tensile_drawn.csv",
+        "truth_force.csv",
+        "force/tw3_slw10_a1.csv",
+        "force/tw3_slw10_a2.csv",
+        "force/tw3_slw10_a3.csv",
         "README.md",
     }
     assert {path for path in (tmp_path / "new").rglob("*") if path.is_file()} == set(written)
@@ -148,6 +153,7 @@ def test_the_repository_holds_what_seed_1_stands_for() -> None:
     assert rows_of(FOLDER / "truth.csv") == as_text(truth_rows(clips))
     assert rows_of(FOLDER / "truth_series.csv") == as_text(series_rows(clips))
     assert rows_of(FOLDER / "pressure_log.csv") == as_text(sample_data.log_rows())
+    assert rows_of(FOLDER / "truth_force.csv") == as_text(force_rows(1))
     designs = sample_data._design_rows(clips)
     assert (FOLDER / "README.md").read_text(encoding="utf-8") == sample_data.readme(designs, sample_data.CONCAVITY, 1)
     assert {f"videos/{path.name}" for path in (FOLDER / "videos").glob("*.mp4") if ".overlay" not in path.name} == {
@@ -185,4 +191,5 @@ def test_the_markers_of_a_clip_in_the_repository_are_where_the_truth_says() -> N
 def test_the_texts_in_the_repository_are_those_that_the_command_writes() -> None:
     folder = Path(__file__).resolve().parents[3] / "sample_data"
     for name, text in sample_data.sample_texts(sample_clips(1), 1).items():
-        assert (folder / name).read_text(encoding="utf-8") == text, f"{name}: run `benchlab sample-data`"
+        content = text if isinstance(text, bytes) else text.encode()
+        assert (folder / name).read_bytes() == content, f"{name}: run `benchlab sample-data`"
