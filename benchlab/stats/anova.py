@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from scipy import special
 
 from benchlab.stats.groups import Group
+from benchlab.stats.names import listed
 from benchlab.stats.noncentral import interval_of_lambda
 
 Interval = tuple[float, float]
@@ -89,7 +90,7 @@ def welch(groups: Sequence[Group]) -> Welch:
     used = [(group.n, group.deviation, group.ss / (group.n - 1), group.name) for group in groups if group.n > 1]
     flat = [name for _, _, variance, name in used if variance == 0]
     if flat:
-        return Welch(None, None, None, left_out, f"not defined: no scatter in {', '.join(flat[:5])}")
+        return Welch(None, None, None, left_out, f"not defined: no scatter in {listed(flat)}")
     weights = [n / variance for n, _, variance, _ in used]
     total, k = math.fsum(weights), len(used)
     grand = math.fsum(w * mean for w, (_, mean, _, _) in zip(weights, used)) / total

@@ -13,7 +13,8 @@ from benchlab.stats.assumptions import Assumptions, look_at_assumptions
 from benchlab.stats.comparison_json import comparison_document
 from benchlab.stats.components import Components, Cycles, find_components
 from benchlab.stats.groups import Group, check_comparable, groups_of, groups_of_summaries
-from benchlab.stats.measurements import Measurements, lookalikes
+from benchlab.stats.measurements import Measurements
+from benchlab.stats.names import listed, lookalikes, shown
 from benchlab.stats.pairs import MOST_GROUPS, Pair, games_howell, tukey
 from benchlab.stats.power import Power, find_power
 from benchlab.stats.repeatability import Repeatability, find_repeatability
@@ -57,7 +58,8 @@ def compare(measurements: Measurements, confidence: float = 0.95, difference: fl
     """
     groups = groups_of(measurements)
     cycles = measurements.cycles() if measurements.nested else None
-    return _compared(groups, cycles, confidence, difference, measurements.warnings)
+    warnings = (*measurements.warnings, *_about_samples(measurements))
+    return _compared(groups, cycles, confidence, difference, warnings)
 
 
 def compare_summaries(
@@ -132,11 +134,11 @@ def _check(confidence: float, difference: float | None) -> None:
 
 def _about_groups(groups: Sequence[Group]) -> list[str]:
     names = [group.name for group in groups]
-    told = [f"groups {a!r} and {b!r} look alike and are taken as two" for a, b in lookalikes(names)]
+    told = _lookalikes("groups", names)
     if lone := [group.name for group in groups if group.n == 1]:
-        told.append(f"one sample in {_listed(lone)}: left out of Welch's ANOVA and Games–Howell, which need two")
+        told.append(f"one sample in {listed(lone)}: left out of Welch's ANOVA and Games–Howell, which need two")
     if flat := [group.name for group in groups if group.n > 1 and group.ss == 0]:
-        told.append(f"no scatter in {_listed(flat)}: are these measured values?")
+        told.append(f"no scatter in {listed(flat)}: are these measured values?")
     sizes = [group.n for group in groups]
     if max(sizes) > 2 * min(sizes):
         told.append(
@@ -146,6 +148,19 @@ def _about_groups(groups: Sequence[Group]) -> list[str]:
     return told
 
 
+def _about_samples(measurements: Measurements) -> list[str]:
+    of_groups = (_lookalikes(f"samples of {shown(name)}", list(row)) for name, row in measurements.cycles().items())
+    return [warning for warnings in of_groups for warning in warnings]
+
+
+def _lookalikes(what: str, names: Sequence[str]) -> list[str]:
+    pairs = lookalikes(names)
+    if not pairs:
+        return []
+    first = "; ".join(f"{shown(a)!r} and {shown(b)!r}" for a, b in pairs[:3])
+    return [f"{what} look alike and are taken as two: {first}" + f"; and {len(pairs) - 3} more" * (len(pairs) > 3)]
+
+
 def _about_cycles(cycles: Cycles | None) -> list[str]:
     if cycles is None:
         return []
@@ -153,7 +168,3 @@ def _about_cycles(cycles: Cycles | None) -> list[str]:
     if len(set(sizes)) == 1:
         return []
     return [f"{min(sizes)} to {max(sizes)} cycles a sample: each sample counts once, with the mean of its cycles"]
-
-
-def _listed(names: Sequence[str], most: int = 5) -> str:
-    return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")

@@ -12,6 +12,7 @@ import numpy as np
 
 from benchlab.errors import InputError
 from benchlab.stats.measurements import Measurements
+from benchlab.stats.names import shown
 from benchlab.units import FloatArray
 
 _NOISE = 8 * float(np.finfo(float).eps)
@@ -81,10 +82,10 @@ def groups_of_summaries(
     found: dict[str, Group] = {}
     for name, count, centre, spread in zip(names, n, mean, sd, strict=True):
         if name in found:
-            raise InputError(f"group {name!r} stands twice", hint="give one row a group")
+            raise InputError(f"group {shown(name)!r} stands twice", hint="give one row a group")
         if count < 1 or not (spread >= 0 and math.isfinite(spread)):
             raise InputError(
-                f"group {name!r} has n {count} and SD {spread:g}", hint="n is at least 1, an SD at least 0"
+                f"group {shown(name)!r} has n {count} and SD {spread:g}", hint="n is at least 1, an SD at least 0"
             )
         found[name] = Group(name, count, float(centre - origin), (count - 1) * spread**2, origin)
     return tuple(found.values())
@@ -93,6 +94,6 @@ def groups_of_summaries(
 def check_comparable(groups: Sequence[Group]) -> None:
     """Raises InputError unless two groups have two samples or more."""
     if sum(group.n >= 2 for group in groups) < 2:
-        sizes = ", ".join(f"{group.name} {group.n}" for group in groups[:8])
+        sizes = ", ".join(f"{shown(group.name)} {group.n}" for group in groups[:8])
         what = f"{len(groups)} group{'s' * (len(groups) != 1)} (samples: {sizes}{', …' * (len(groups) > 8)})"
         raise InputError(f"{what}: a comparison needs >= 2 groups with >= 2 samples", hint="measure more samples")

@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Context, Decimal, DecimalException
-from itertools import pairwise
 
 import numpy as np
 
@@ -94,18 +93,6 @@ def digits_in_float64(origin: Decimal, deviations: FloatArray) -> float:
     return min(_FLOAT_DIGITS, _FLOAT_DIGITS - float(abs(origin).log10()) + math.log10(spread))
 
 
-def lookalikes(names: Sequence[str]) -> list[tuple[str, str]]:
-    """Pairs of different names that may be meant as one: unlike only in case, blanks, or in how a number is written.
-
-    >>> lookalikes(["1", "1.0", "slw5", "SLW 5", "slw10"])
-    [('1', '1.0'), ('slw5', 'SLW 5')]
-    """
-    alike: dict[str, list[str]] = {}
-    for name in dict.fromkeys(names):
-        alike.setdefault(_folded(name), []).append(name)
-    return [pair for same in alike.values() for pair in pairwise(same)]
-
-
 def _decimal(value: Value, row: int) -> Decimal:
     try:
         number = Decimal(repr(float(value)) if isinstance(value, float) else value)
@@ -125,12 +112,3 @@ def _lost(origin: Decimal, deviations: FloatArray, as_text: bool) -> tuple[str, 
     if as_text:
         return (f"{kept} ({spread}); they were read as decimals, so that nothing is lost here",)
     return (f"{kept} ({spread}): give the values as text, as they were written, not as floats",)
-
-
-def _folded(name: str) -> str:
-    text = "".join(name.split()).casefold()
-    try:
-        number = Decimal(text.replace(",", "."))
-    except (DecimalException, ValueError):
-        return text
-    return str(number.normalize()) if number.is_finite() else text

@@ -11,6 +11,7 @@ import numpy as np
 
 from benchlab.stats.effect_size import hedges_g
 from benchlab.stats.groups import Group
+from benchlab.stats.names import shown
 from benchlab.stats.studentized_range import FLOOR, StudentizedRange
 from benchlab.units import FloatArray
 
@@ -58,7 +59,7 @@ def games_howell(groups: Sequence[Group], confidence: float = 0.95) -> tuple[Pai
     reasons: list[str | None] = []
     for a, b in pairs:
         reason: str | None
-        if lone := [group.name for group in (a, b) if group.n < 2]:
+        if lone := [shown(group.name) for group in (a, b) if group.n < 2]:
             error, df, reason = 0.0, 1.0, f"one sample in {' and '.join(lone)}"
         else:
             of_a, of_b = a.ss / (a.n - 1) / a.n, b.ss / (b.n - 1) / b.n

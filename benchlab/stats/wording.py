@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from benchlab.stats.anova import OneWay, Welch
+from benchlab.stats.names import shown
 from benchlab.stats.pairs import Pair
 from benchlab.stats.studentized_range import FLOOR
 
@@ -84,7 +85,7 @@ def disagreements(
         )
     for one, other in zip(tukey, games_howell):
         if one.p is not None and other.p is not None and _below(one.p, alpha) != _below(other.p, alpha):
-            pair = f"{one.a} and {one.b}"
+            pair = f"{shown(one.a)} and {shown(one.b)}"
             told.append(
                 f"{pair}: Tukey ({p_equals(one.p)}) and Games–Howell ({p_equals(other.p)}) disagree at {alpha:.3g}"
             )
