@@ -193,11 +193,11 @@ class _Proof:
             raise NotPlainError
         if self.quoted:
             self._check_quotes(codes, codes == _QUOTE, ends - 1 - self.returns)
-        if codes.max() > _NINE:
-            letters = codes > _NINE
-            known = sum(np.count_nonzero(codes == code) for code in {*_EXPONENTS, ord(self.separator)} if code > _NINE)
-            if np.count_nonzero(letters) != known or not self.all_marked:
-                raise NotPlainError
+        letters = np.count_nonzero(codes > _NINE)
+        if ord(self.separator) > _NINE:
+            letters -= np.count_nonzero(codes == ord(self.separator))
+        if letters and not (self.all_marked and letters == sum(np.count_nonzero(codes == code) for code in _EXPONENTS)):
+            raise NotPlainError
 
     def _check_quotes(self, codes: Bytes, quotes: NDArray[np.bool_], ends: NDArray[np.intp]) -> None:
         """Two quotation marks a cell, beside the separators and the ends of lines."""
