@@ -21,6 +21,7 @@ from benchlab.cli.report import report
 from benchlab.cli.sample_data import sample_data
 from benchlab.cli.simulate import simulate
 from benchlab.cli.stats import stats
+from benchlab.cli.study import study
 from benchlab.cli.sweep import sweep
 from benchlab.errors import BenchlabError, printable
 
@@ -55,6 +56,7 @@ cli.add_command(report)
 cli.add_command(sample_data)
 cli.add_command(simulate)
 cli.add_command(stats)
+cli.add_command(study)
 cli.add_command(sweep)
 
 

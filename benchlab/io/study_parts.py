@@ -124,7 +124,11 @@ class ForceSettings(Document):
     columns: str | None = None
     force_unit: str | None = None
     decimal: Literal[".", ","] | None = None
+    encoding: str | None = None
     sort_time: bool | None = None
+    negate: bool | None = None
+    tolerance_MPa: Positive | None = None
+    lever_arm_mm: Positive | None = None
 
 
 class ForceFileDocument(ForceSettings):

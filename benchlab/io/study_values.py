@@ -9,11 +9,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from benchlab.actuator import ShellDesign
+from benchlab.force.curve import BlockedForce
 from benchlab.units import FloatArray
 
 ALL_DESIGNS = "all"
@@ -120,14 +120,14 @@ class Simulated:
 
 @dataclass(frozen=True)
 class DesignValues:
-    """One design with its samples. shell and simulated: None where the study does not tell. force: its blocked force
-    (`benchlab.force`), None where there is none."""
+    """One design with its samples. shell and simulated: None where the study does not tell. force: its blocked
+    force, None where there is none."""
 
     name: str
     shell: ShellDesign | None
     simulated: Simulated | None
     samples: tuple[SampleValues, ...]
-    force: Any = None
+    force: BlockedForce | None = None
 
     @property
     def counted(self) -> tuple[SampleValues, ...]:

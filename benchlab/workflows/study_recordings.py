@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from benchlab.errors import InputError
+from benchlab.errors import BenchlabError, InputError
 from benchlab.io.angle_table import names_samples
 from benchlab.io.files import cannot_write, check_regular_file, sha256
 from benchlab.io.run_file import read_provenance
@@ -89,6 +89,12 @@ def _analysed(item: StudyItem, target: Target, overwrite: bool) -> dict[str, Any
         "readings": read_run(outputs.run_file, target),
         "sha256": (read_provenance(outputs.run_file) or {}).get("sha256", ""),
     }
+
+
+def reason_for(error: BenchlabError, path: Path) -> str:
+    """What an error says, without the name of the file that it is told of."""
+    elsewhere = error.file if error.file and Path(error.file) != path else None
+    return str(BenchlabError(error.what, file=elsewhere, where=error.where, hint=error.hint))
 
 
 def analyze_settings(recording: StudyRecording) -> AnalyzeSettings:

@@ -25,8 +25,9 @@ from benchlab.io.study_values import (
     StudyValues,
 )
 from benchlab.workflows.batch import run_batch
+from benchlab.workflows.study_force import force_of
 from benchlab.workflows.study_readings import Target
-from benchlab.workflows.study_recordings import Place, read_item, study_items
+from benchlab.workflows.study_recordings import Place, read_item, reason_for, study_items
 from benchlab.workflows.study_simulated import simulated_of
 
 Progress = Callable[[int, int | None], None]
@@ -51,7 +52,7 @@ def collect(
     Only recordings are analysed whose content or settings (or benchlab's version) have changed. One that fails is listed among the
     failures, and the rest goes on. A recording that is left out is analysed too, and does not count; that it cannot be is no failure.
     progress: called with recordings done and in all. Raises UsageError for a folder that cannot be written to. After Ctrl-C, what is
-    finished is current the next time.
+    finished is current the next time. Force files are read each time.
     """
     _check_folder(out)
     items = list(study_items(study, out / RECORDINGS))
@@ -92,25 +93,27 @@ def _done(recording: StudyRecording, result: dict[str, Any] | None) -> _Read:
 
 def _failed(recording: StudyRecording, error: BenchlabError, target: Target) -> _Read:
     """A recording without values; its only cycle, number 0, says why."""
-    elsewhere = error.file if error.file and Path(error.file) != recording.path else None
-    line = type(error)(error.what, file=elsewhere, where=error.where, hint=error.hint)
+    why = reason_for(error, recording.path)
     none = np.full(len(target.curve_MPa), np.nan)
     return _Read(
-        RecordingValues(recording.file, "failed", (CycleValue(0, math.nan, flag=str(line)),), none, recording.left_out)
+        RecordingValues(recording.file, "failed", (CycleValue(0, math.nan, flag=why),), none, recording.left_out)
     )
 
 
 def _assembled(study: Study, target: Target, read: Mapping[Place, _Read]) -> StudyValues:
     designs, failures = [], []
-    for design in study.designs:
+    forces = [force_of(design) for design in study.designs]
+    for design, found in zip(study.designs, forces):
         samples = tuple(_sample(design, sample, read) for sample in design.samples)
-        simulated, missing = _simulated(design, study.pressure_MPa)
-        failures += missing
-        designs.append(DesignValues(design.name, design.shell, simulated, samples))
+        simulated, missing = simulated_or_missing(design, study.pressure_MPa)
+        failures += [*missing, *found.failures]
+        designs.append(DesignValues(design.name, design.shell, simulated, samples, found.force))
     failures += [*_without_values(designs)]
     inputs = {study.path.name: sha256(study.path)}
     inputs |= {item.values.file: item.sha256 for item in read.values() if item.sha256}
     inputs |= {s.file: sha256(s.path) for d in study.designs if (s := d.simulated) and s.path and s.path.is_file()}
+    for found in forces:
+        inputs |= found.inputs
     return StudyValues(
         title=study.title,
         notes=study.notes,
@@ -120,8 +123,8 @@ def _assembled(study: Study, target: Target, read: Mapping[Place, _Read]) -> Stu
         designs=tuple(designs),
         sets=study.sets,
         failures=tuple(failures),
-        left_out=tuple(_left_out(designs)),
-        warnings=(*_warnings(designs), *_twice(study, read)),
+        left_out=(*_left_out(designs), *(one for found in forces for one in found.left_out)),
+        warnings=(*_warnings(designs), *_twice(study, read), *(one for found in forces for one in found.warnings)),
         inputs=inputs,
     )
 
@@ -131,7 +134,8 @@ def _sample(design: StudyDesign, sample: StudySample, read: Mapping[Place, _Read
     return SampleValues(sample.name, recordings, sample.left_out)
 
 
-def _simulated(design: StudyDesign, pressure_MPa: float) -> tuple[Simulated | None, list[Missing]]:
+def simulated_or_missing(design: StudyDesign, pressure_MPa: float) -> tuple[Simulated | None, list[Missing]]:
+    """What a design should do, and why its angle at the pressure is missing, if it is."""
     try:
         found = simulated_of(design, pressure_MPa)
     except BenchlabError as error:
