@@ -23,6 +23,27 @@ COLUMNS = (
     "samples",
 )
 
+
+@dataclass(frozen=True)
+class PublishedForce:
+    """Blocked force of one design of the paper: mean and standard deviation over `actuators`."""
+
+    tw_mm: float
+    slw_mm: float
+    pressure_MPa: float
+    mean_N: float
+    sd_N: float
+    actuators: int
+
+    @property
+    def design(self) -> ShellDesign:
+        """The design with the rib, perimeter and length that all of the paper's have."""
+        return ShellDesign(strip_width_mm=self.slw_mm, window_width_mm=self.tw_mm)
+
+
+BLOCKED_FORCE = PublishedForce(3.0, 10.0, 0.35, 37.72, 1.56, 3)
+"""The only blocked force that the paper gives (section III-B), of the ten pressures in its Fig. 3b; linear in pressure, it says."""
+
 _ALWAYS = COLUMNS[:3]
 
 

@@ -45,54 +45,55 @@ def draw_force_figure(found: BlockedForce, drawn: bool = False) -> Figure:
     return figure
 
 
+def draw_force_panel(found: BlockedForce, title: str, paper: tuple[float, float, float] | None = None) -> Figure:
+    """The figure as a panel of a report. paper: pressure, mean and SD that were published."""
+    width, height = 4.7, 3.3
+    figure = figure_class()(figsize=(width, height), dpi=DPI)
+    ax = figure.add_axes((0.62 / width, 0.46 / height, (width - 0.72) / width, (height - 0.76) / height))
+    plot_blocked_force(ax, found, paper, letters=8)
+    style: dict[str, Any] = {"va": "top", "fontsize": 9.5, "fontweight": "bold", "parse_math": False}
+    figure.text(0.06 / width, 1 - 0.06 / height, drawable(title, 46), **style)
+    return figure
+
+
 def plot_blocked_force(
-    ax: Axes, found: BlockedForce, paper: tuple[float, float, float] | None = None, legend: bool = True
+    ax: Axes, found: BlockedForce, paper: tuple[float, float, float] | None = None, letters: float = 8.5
 ) -> None:
     """The panel. paper: pressure, mean and SD that were published."""
     pressure, mean, sd = found.pressure_MPa, found.over_actuators_N, found.sd_N
+    step = float(np.diff(pressure).min()) if len(pressure) > 1 else 0.1 * float(pressure.max())
+    _plot_actuators(ax, found, step)
+    black: dict[str, Any] = {"color": "black", "zorder": 5}
+    several = np.isfinite(sd)
+    label = None if several.any() else "mean"
+    ax.plot(pressure, mean, "_", markersize=11, markeredgewidth=1.4, label=label, **black)
+    if several.any():
+        ax.errorbar(pressure[several], mean[several], yerr=sd[several], fmt="none", elinewidth=1.1, capsize=3.5,
+                    label="mean ± 1 SD of actuators", ecolor="black", zorder=5)  # fmt: skip
+    bound = found.lower_bound.any(axis=0)
+    if bound.any():
+        ax.plot(pressure[bound], mean[bound], "^", color=OTHER, markersize=7, zorder=6, label="≥: lower bound")
     if found.line is not None:
         _plot_line(ax, found.line, float(pressure.max()))
-    step = float(np.diff(pressure).min()) if len(pressure) > 1 else 0.1 * float(pressure.max())
+    if paper is not None:
+        at, published, spread = paper
+        ax.errorbar([at + 0.32 * step], [published], yerr=[spread], fmt="D", color=OTHER, markerfacecolor="white", markersize=4.5,
+                    capsize=3, zorder=6, label=f"paper: {published:g} ± {spread:g} N")  # fmt: skip
+    ax.set_xlim(0, float(pressure.max()) + 0.7 * step)
+    ax.set_ylim(bottom=None if float(np.nanmin(found.mean_N)) < 0 else 0)
+    dress(ax, "pressure (MPa)", "blocked force (N)")
+    for text in ax.legend(loc="upper left", fontsize=letters, frameon=False).get_texts():
+        text.set_parse_math(False)
+
+
+def _plot_actuators(ax: Axes, found: BlockedForce, step: float) -> None:
+    """Points of each actuator, side by side within a step of pressure."""
     few = len(found.actuators) <= len(_MARKS)
     aside = np.linspace(-0.16, 0.16, len(found.actuators)) * step if len(found.actuators) > 1 else np.zeros(1)
     for i, name in enumerate(found.actuators):
         label = drawable(name, 28) if few else "actuators" if i == 0 else None
-        ax.plot(pressure + aside[i], found.mean_N[i], _MARKS[i] if few else "o", color=_POINT, markerfacecolor="white", markersize=3.6,
-                markeredgewidth=0.8, linestyle="none", zorder=3, label=label)  # fmt: skip
-    several = np.isfinite(sd)
-    ax.plot(
-        pressure,
-        mean,
-        "_",
-        color="black",
-        markersize=11,
-        markeredgewidth=1.4,
-        zorder=5,
-        label=None if several.any() else "mean",
-    )
-    if several.any():
-        ax.errorbar(pressure[several], mean[several], yerr=sd[several], fmt="none", ecolor="black", elinewidth=1.1, capsize=3.5, zorder=5,
-                    label="mean ± 1 SD of actuators")  # fmt: skip
-    bound = found.lower_bound.any(axis=0)
-    if bound.any():
-        ax.plot(
-            pressure[bound], mean[bound], "^", color=OTHER, markersize=7, zorder=6, label="≥: load cell at its limit"
-        )
-    if paper is not None:
-        at, published, spread = paper
-        ax.errorbar([at], [published], yerr=[spread], fmt="D", color=OTHER, markerfacecolor="white", markersize=5, capsize=3.5, zorder=6,
-                    label=f"paper: {published:g} ± {spread:g} N")  # fmt: skip
-    ax.set_xlim(0, float(pressure.max()) + 0.7 * step)
-    low = float(np.nanmin(found.mean_N))
-    ax.set_ylim(bottom=None if low < 0 else 0)
-    dress(ax, "pressure (MPa)", "blocked force (N)")
-    if legend:
-        shown = dict(zip(*reversed(ax.get_legend_handles_labels())))
-        order = sorted(shown, key=lambda label: (label.startswith(("line", "95 %")), label not in found.actuators))
-        for text in ax.legend(
-            [shown[k] for k in order], order, loc="upper left", fontsize=8.5, frameon=False
-        ).get_texts():
-            text.set_parse_math(False)
+        ax.plot(found.pressure_MPa + aside[i], found.mean_N[i], _MARKS[i] if few else "o", color=_POINT, markerfacecolor="white",
+                markersize=3.6, markeredgewidth=0.8, linestyle="none", zorder=3, label=label)  # fmt: skip
 
 
 def line_words(found: BlockedForce) -> list[str]:

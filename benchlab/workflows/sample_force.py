@@ -7,12 +7,12 @@ import math
 import numpy as np
 
 from benchlab.force.synthetic import CycleShape, DrawnTrace, draw_trace
+from benchlab.io.published import BLOCKED_FORCE
 from benchlab.units import FloatArray
 
 STEPS_MPA = tuple(round(0.035 * step, 3) for step in range(1, 11))
 CYCLES = 5
-PUBLISHED_N = (37.72, 1.56)
-"""Blocked force at 0.35 MPa, mean and SD of three actuators (tw 3, slw 10), linear in pressure: the paper, section III-B."""
+PUBLISHED_N = (BLOCKED_FORCE.mean_N, BLOCKED_FORCE.sd_N)
 
 RATE_HZ = 20.0
 CYCLE_N = 0.15

@@ -14,6 +14,7 @@ from benchlab.io.study_file import StudyDesign, StudyForceFile
 from benchlab.io.study_values import Missing
 from benchlab.workflows.force import ForceInput, ForceRead, combined, origin_of, read_force
 from benchlab.workflows.force_cycles import ForceSettings, FoundCycles
+from benchlab.workflows.study_recordings import reason_for
 
 _OF_READING = ("columns", "force_unit", "decimal", "encoding", "sort_time")
 
@@ -39,7 +40,7 @@ def force_of(design: StudyDesign) -> StudyForce:
         try:
             found = read_force(ForceInput(record.path, record.actuator), force_settings(record))
         except BenchlabError as error:
-            failures.append(Missing(_line(error, record.path), design.name, record.actuator, record.file))
+            failures.append(Missing(reason_for(error, record.path), design.name, record.actuator, record.file))
             continue
         inputs[record.file] = found.sha256
         if "pressure" in record.settings:
@@ -96,8 +97,3 @@ def _combined(
 def _alike(found: ForceRead, read: list[tuple[StudyForceFile, ForceRead]]) -> list[str]:
     """The first file with the same content, if there is one: copies are no repetition."""
     return [record.file for record, other in read if other.sha256 == found.sha256][:1]
-
-
-def _line(error: BenchlabError, path: Path) -> str:
-    elsewhere = error.file if error.file and Path(error.file) != path else None
-    return str(type(error)(error.what, file=elsewhere, where=error.where, hint=error.hint))

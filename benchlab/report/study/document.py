@@ -14,6 +14,7 @@ from benchlab.report.study.differences import (
     power_blocks,
     tests_table,
 )
+from benchlab.report.study.force import force_section
 from benchlab.report.study.pictures import bands_blocks, bars_blocks, consistency_blocks, intervals_blocks
 from benchlab.report.study.published import published_section
 from benchlab.report.study.repeatability import components_blocks, consistency_table, consistency_words
@@ -32,6 +33,7 @@ def study_document(report: StudyReport) -> Document:
         verdict_section(report),
         Section("The designs", (designs_table(report), *bars_blocks(report))),
         Section("Angle against pressure", tuple(bands_blocks(report))),
+        *filter(None, (force_section(report),)),
         Section("Do they differ?", (*tests, *intervals_blocks(report), *pairs)),
         *_repeatability(report),
         *filter(None, (published_section(report),)),

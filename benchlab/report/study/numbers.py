@@ -6,6 +6,7 @@ from dataclasses import asdict
 from typing import Any
 
 from benchlab.actuator import DIMENSIONS
+from benchlab.force.curve_json import blocked_force_json
 from benchlab.io.nexus import plain
 from benchlab.io.study_values import DesignValues, Missing, SampleValues
 from benchlab.report.study.differences import all_warnings
@@ -56,6 +57,7 @@ def _design(report: StudyReport, design: DesignValues) -> dict[str, Any]:
         "simulated_by": None if simulated is None else simulated.source,
         "simulated_less_measured_deg": error_of(design),
         "published": None if paper is None else asdict(paper),
+        "blocked_force": None if design.force is None else blocked_force_json(design.force),
         "curve": {"mean_deg": mean, "sd_deg": spread},
         "samples": [_sample(sample) for sample in design.samples],
     }
