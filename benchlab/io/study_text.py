@@ -84,7 +84,11 @@ def study_text(draft: StudyDraft, name: str = "study.yaml") -> str:
     for design in draft.designs:
         lines += _design(design)
     if draft.sets:
-        lines += ["", "# Proposed: designs that differ in one dimension and are alike in all others.", "sets:"]
+        lines += [
+            "",
+            "# Compared with each other; proposed: designs that differ in one dimension and are alike in all others.",
+            "sets:",
+        ]
         lines += [_set(chosen) for chosen in draft.sets]
     if draft.unused:
         lines += ["", "# Not in this study:"]

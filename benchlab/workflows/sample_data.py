@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,6 +19,7 @@ from benchlab.vision.picture import FloatArray
 from benchlab.vision.synthetic import Scene, draw_frames
 from benchlab.workflows.sample_data_readme import readme
 from benchlab.workflows.sample_force import force_files, force_rows
+from benchlab.workflows.sample_study import SIMULATED, STUDY, sample_study, write_simulated
 from benchlab.workflows.sample_tensile import tensile_text
 
 Progress = Callable[[int, int | None], None]
@@ -90,7 +91,8 @@ def make_sample_data(out: Path, seed: int = 1, progress: Progress | None = None)
         (out / name).parent.mkdir(exist_ok=True)
         with written_whole(out / name) as temporary:
             temporary.write_bytes(text if isinstance(text, bytes) else text.encode())
-    return [*written, *(out / name for name in (*tables, *texts))]
+    write_simulated(out / SIMULATED, {clip.design for clip in clips})
+    return [*written, *(out / name for name in (*tables, *texts, SIMULATED))]
 
 
 def sample_clips(seed: int) -> tuple[SampleClip, ...]:
@@ -111,11 +113,12 @@ def sample_clips(seed: int) -> tuple[SampleClip, ...]:
     return tuple(clips)
 
 
-def sample_texts(clips: Iterable[SampleClip], seed: int) -> dict[str, str | bytes]:
+def sample_texts(clips: Sequence[SampleClip], seed: int) -> dict[str, str | bytes]:
     """The files beside the clips that are text of their own making, by their place in the folder; bytes where it is not UTF-8."""
     return {
         **force_files(seed),
         "tensile_drawn.csv": tensile_text(seed),
+        STUDY: sample_study([(clip.design, clip.sample, clip.file) for clip in clips], seed),
         "README.md": readme(_design_rows(clips), CONCAVITY, seed),
     }
 

@@ -50,6 +50,10 @@ its ends.
   37.72 ± 1.56 N of three actuators ({force}); ten steps from 0.035 to 0.35 MPa, five cycles each. Our choice: cycles scatter by 0.15 N, the
   load cell's zero is off and drifts, noise 0.04 N. Each says in its preamble that it is drawn.
 - `truth_force.csv`, one row per cycle of these: `file`, `cycle`, `pressure_MPa`, `peak_N`, without noise and zero.
+- `study.yaml`: all of these as one study, for `benchlab study check` and `benchlab report`: the designs, their samples with their clips,
+  the slw set at tw 3 and the tw set at slw 10, and the force records.
+- `simulated.h5`: simulated, not measured: angles of these designs against pressure as `benchlab sweep --tw-mm 3,9,15 --slw-mm 5,10,20
+  --no-blocked` simulates them, with a film identified from the paper's FEM angles. Its numbers do not depend on the clips.
 
 The same seed draws the same pictures; the files are the same bytes only with the same version of the encoder.
 """

@@ -101,6 +101,14 @@ def sweep(
     }
 
 
+def simulated_sweep(axes: Mapping[str, tuple[float, ...]], conditions: Conditions) -> Sweep:
+    """All combinations of `axes` as `sweep` simulates them, without a file. Raises UsageError where there is no design at all."""
+    designs = _designs(axes)
+    done = _Progressing([conditions.key(d) if isinstance(d, ShellDesign) else "" for d in designs])
+    _simulate(designs, conditions, done, 1, None, None, lambda: None)
+    return _assembled(axes, designs, conditions, done, False)
+
+
 def _designs(axes: Mapping[str, tuple[float, ...]]) -> list[ShellDesign | BenchlabError]:
     """Each combination as a design, or the error that it is none. Raises the first error where there is no design at all."""
     count = int(np.prod([len(values) for values in axes.values()]))

@@ -10,11 +10,17 @@ import numpy as np
 import pytest
 
 from benchlab.errors import InputError, UsageError
+from benchlab.io.layup_file import DEFAULT_LAYUP, read_layup
 from benchlab.io.recording import open_recording
+from benchlab.io.sweep_file import read_sweep_file
+from benchlab.simulation.actuator_response import Fixture
 from benchlab.vision.synthetic import Scene, marker_truth
-from benchlab.workflows import sample_data
+from benchlab.workflows import sample_data, sample_study
 from benchlab.workflows.sample_data import PUBLISHED_DEG, make_sample_data, sample_clips, series_rows, truth_rows
 from benchlab.workflows.sample_force import force_rows
+from benchlab.workflows.simulated import Conditions
+from benchlab.workflows.study_check import check_study
+from benchlab.workflows.sweep import simulated_sweep
 
 FOLDER = Path(__file__).resolve().parents[3] / "sample_data"
 SMALL = Scene(width=320, height=180, length_px=150.0, base_px=(60.0, 40.0), marker_radius_px=4.0, body_width_px=14.0)
@@ -36,9 +42,10 @@ def decoded(path: Path) -> list[np.ndarray]:
 
 @pytest.fixture
 def small(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two frames a clip, of a picture of 320×180."""
+    """Two frames a clip, of a picture of 320×180; two simulated pressures."""
     monkeypatch.setattr(sample_data, "FRAMES", 2)
     monkeypatch.setattr(sample_data, "_scene", lambda *_: SMALL)
+    monkeypatch.setattr(sample_study, "PRESSURES_MPA", (0.0, 0.1))
 
 
 def test_a_seed_stands_for_five_samples_of_each_published_design() -> None:
@@ -94,6 +101,8 @@ def test_the_folder_holds_clips_tables_and_a_readme_that_say_they_are_drawn(smal
         "pressure_log.csv",
         "tensile_drawn.csv",
         "truth_force.csv",
+        "study.yaml",
+        "simulated.h5",
         "force/tw3_slw10_a1.csv",
         "force/tw3_slw10_a2.csv",
         "force/tw3_slw10_a3.csv",
@@ -193,3 +202,26 @@ def test_the_texts_in_the_repository_are_those_that_the_command_writes() -> None
     for name, text in sample_data.sample_texts(sample_clips(1), 1).items():
         content = text if isinstance(text, bytes) else text.encode()
         assert (folder / name).read_bytes() == content, f"{name}: run `benchlab sample-data`"
+
+
+def test_the_study_in_the_repository_lacks_nothing() -> None:
+    found = check_study(FOLDER / "study.yaml")
+    assert found["missing"] == found["left_out"] == found["notes"] == []
+    assert [(design["name"], design["n"], design["simulated"]) for design in found["designs"]] == [
+        (f"tw{tw}_slw{slw}", 5, "found") for tw, slw in PUBLISHED_DEG
+    ]
+    assert [chosen["designs"] for chosen in found["sets"][:2]] == [
+        ["tw3_slw5", "tw3_slw10", "tw3_slw20"],
+        ["tw3_slw10", "tw9_slw10", "tw15_slw10"],
+    ]
+
+
+def test_the_simulation_in_the_repository_is_what_the_code_says() -> None:
+    sweep = read_sweep_file(FOLDER / "simulated.h5")
+    assert (FOLDER / "simulated.h5").stat().st_size < 100e3
+    assert sweep.axes["tw_mm"] == (3, 9, 15) and sweep.axes["slw_mm"] == (5, 10, 20)
+    axes = {**sweep.axes, "tw_mm": (3.0,), "slw_mm": (10.0,)}
+    again = simulated_sweep(axes, Conditions(read_layup(DEFAULT_LAYUP), (0.0, 0.35), Fixture(), blocked=False))
+    assert sweep.pressure_MPa[-1] == 0.35
+    assert sweep.curves["angle_deg"][1, -1] == pytest.approx(again.curves["angle_deg"][0, -1], abs=1e-3)
+    assert "/" not in sweep.provenance["argv"][0]
