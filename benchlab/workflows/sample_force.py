@@ -74,7 +74,7 @@ def force_rows(seed: int) -> list[dict[str, object]]:
 def _english(drawn: DrawnTrace) -> str:
     head = (
         "Specimen properties : Specimen label,tw3_slw10 a1",
-        f"Specimen properties : Specimen note 1,{ORIGIN}",
+        f'Specimen properties : Specimen note 1,"{ORIGIN}"',
         "Specimen properties : Test,blocked force: 10 steps of 5 cycles to 0.35 MPa",
         "",
         "Time,Displacement,Force",

@@ -89,8 +89,9 @@ def _combined(
         return None, [Missing(f"blocked force: {error}", design.name)], []
     if force is not None:
         doubts += [*force.notes, *reasons]
-        origins = dict.fromkeys(filter(None, (origin_of(item.export) for _, item in read)))
-        force = replace(force, notes=(*force.notes, *origins))
+        if origins := [text for _, item in read if (text := origin_of(item.export))]:
+            said = f"{len(origins)} of {len(read)} force files say that they were not measured: “{origins[0]}”"
+            force = replace(force, notes=(*force.notes, said))
     return force, [], [Missing(f"blocked force: {text}", design.name) for text in doubts]
 
 

@@ -48,8 +48,9 @@ def _blocks(known: list[tuple[DesignValues, BlockedForce]]) -> Iterator[Block]:
     yield _lines_table(known)
     for design, force in known:
         yield Words(_lever(design, force), head=f"Lever arm, {cut(design.name, 40)}:")
-    for text in dict.fromkeys(text for _, force in known for text in force.notes if "not measured" in text):
-        yield Words(f"The force files say of themselves: {cut(text, 200)}.", "warning")
+    for design, force in known:
+        for text in force.notes:
+            yield Words(f"{cut(text, 300)}.", "warning", f"{cut(design.name, 40)}:")
 
 
 def _found(force: BlockedForce) -> str:
@@ -125,7 +126,8 @@ def _force_rows(design: DesignValues, force: BlockedForce) -> Iterator[tuple[Cel
 
 def _lines_table(known: list[tuple[DesignValues, BlockedForce]]) -> Table:
     columns = (
-        Column("design", "design", False), Column("slope_N_per_MPa", "slope (N/MPa)"), Column("slope_low"), Column("slope_high"),
+        Column("design", "design", False), Column("slope_N_per_MPa", "slope (N/MPa)"),
+        Column("slope_low_N_per_MPa"), Column("slope_high_N_per_MPa"),
         Column("", "interval"), Column("intercept_N", "at 0 MPa (N)"), Column("intercept_low_N"), Column("intercept_high_N"),
         Column("", "interval"), Column("through_origin_N_per_MPa", "slope through 0 (N/MPa)"), Column("r_squared", "R²"),
         Column("residual_sd_N", "residual SD (N)"), Column("lack_of_fit_F", "lack of fit F"), Column("lack_of_fit_p", "p"),
