@@ -123,6 +123,8 @@ def _converted(value: ArrayLike, unit: str, quantity: str) -> FloatArray:
     factor = UNITS[quantity][found[1]]
     inverse = round(1 / factor)
     array = np.asarray(value, dtype=float)
+    if factor == 1:
+        return array
     return array / inverse if factor < 1 and np.isclose(inverse * factor, 1, rtol=1e-14) else array * factor
 
 

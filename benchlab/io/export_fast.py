@@ -22,10 +22,10 @@ from benchlab.io.export_numbers import BARE, Column, FloatArray, Signs, find_sig
 from benchlab.io.export_text import HEAD, MAX_ROWS, TAIL, ExportText, Row, head_lines, split_lines
 from benchlab.io.numbers import MAX_NUMBER
 
-MIN_BYTES = 4 * HEAD
+MIN_BYTES = 16 * HEAD
 """Smaller files are left to the strict reader."""
 
-_CHUNK = 1 << 21
+_CHUNK = 1 << 20
 _SAMPLE = 200
 """Bytes that a thread reads at a time; rows by which the decimal sign is found."""
 

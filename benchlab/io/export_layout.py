@@ -59,9 +59,10 @@ def find_layout(path: Path, rows: Sequence[Row], unpaired: set[int], is_whole: b
             cut, end = rows[-1][0], last - 1
         _check_rows(path, rows, index, end, unpaired)
         span = _with_header(path, rows, below, index, end)
-        if spans and not span.has_header:
+        if not spans or span.has_header:
+            spans.append(span)
+        elif all_numbers(rows[index][1]) or not _is_apart(rows, index):
             raise _gap(path, rows[below])
-        spans.append(span)
         index = below = last
     if not spans:
         raise _no_table(path, rows)
@@ -92,9 +93,15 @@ def _end(rows: Sequence[Row], first: int) -> int:
             continue
         odd = [i for i, cell in enumerate(cells) if cell and not is_number(cell)]
         known = all(i in words or _NO_READING.fullmatch(cells[i]) for i in odd)
-        if len(cells) != width or not (known or 2 * len(odd) < sum(map(bool, cells))):
+        few = 2 * len(odd) < sum(map(bool, cells)) and not _is_apart(rows, index)
+        if len(cells) != width or not (known or few):
             return index
     return len(rows)
+
+
+def _is_apart(rows: Sequence[Row], index: int) -> bool:
+    """Whether there is a blank line before a row, as before statistics at the end."""
+    return index > 0 and rows[index][0] > rows[index - 1][0] + 1
 
 
 def is_cut(rows: Sequence[Row], unpaired: set[int], is_whole: bool) -> bool:

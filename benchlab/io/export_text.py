@@ -20,7 +20,7 @@ MAX_ROWS = 3_000_000
 SEPARATORS = {"\t": "tab", ";": "semicolon", "|": "bar", ",": "comma", " ": "blanks"}
 """Name of each separator, those first that are taken where two fit alike."""
 
-HEAD, TAIL = 1 << 16, 1 << 14
+HEAD, TAIL = 1 << 14, 1 << 13
 """Bytes at the beginning and the end of a file by which its separator is found."""
 
 Row = tuple[int, list[str]]
@@ -127,8 +127,7 @@ def _separator(path: Path, data: bytes) -> str:
     tail: list[str] = []
     if len(data) > HEAD:
         head, tail = head[:-1], _LINE_ENDS.split(data[-TAIL:].decode("utf-8", "replace"))[1:]
-    head = [line for line in head if line.strip()][:400]
-    sample = [line[:MAX_LINE] for line in (*head, *tail[-200:]) if line.strip()]
+    sample = [line[:MAX_LINE] for line in (*head, *tail) if line.strip()]
     if not sample:
         raise InputError("no data rows", file=path, hint="the file holds no text")
 
