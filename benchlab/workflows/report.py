@@ -96,7 +96,9 @@ def _compared(values: StudyValues, chosen: StudySet, confidence: float, differen
         for cycle in sample.cycles
     ]
     if not rows:
-        return ComparedSet(chosen, None, "No sample has a value.")
+        return ComparedSet(chosen, None, "no sample has a value.")
+    if sum(len(design.counted) > 1 for design in values.of(chosen)) < 2:
+        return ComparedSet(chosen, None, "fewer than two designs have two samples or more; measure more samples.")
     groups, samples, angles = zip(*rows)
     try:
         return ComparedSet(chosen, compare(measurements_of(groups, angles, samples), confidence, difference_deg))

@@ -18,7 +18,8 @@ from benchlab.io.summary_table import read_summary_table
 from benchlab.report.comparison_tables import comparison_tables
 from benchlab.report.document import Table, cut, write_table
 from benchlab.report.figures import save_png
-from benchlab.report.study.figures import Bar, Interval, draw_bars, draw_intervals
+from benchlab.report.study.bars_figure import Bar, draw_bars
+from benchlab.report.study.figures import Interval, draw_intervals
 from benchlab.report.svg import svg_of
 from benchlab.stats.comparison import Comparison, compare, compare_summaries
 from benchlab.stats.measurements import measurements_of

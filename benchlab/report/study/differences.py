@@ -105,32 +105,30 @@ def power_blocks(report: StudyReport) -> Iterator[Block]:
         yield Words("Nothing scatters: there is no power to tell.")
         return
     wanted = known[0][1].difference
-    columns = [Column("set", "set", False), Column("sd_deg", "pooled SD (°)"), Column("n", "samples a design")]
-    for test, name in (("anova", "F test"), ("pair", "a pair, Tukey")):
-        columns += [
-            Column(f"{test}_smallest_{100 * share:.0f}_deg", f"{name}: seen in {100 * share:.0f} % (°)")
-            for share in WANTED
-        ]
-        if wanted is not None:
-            columns += [Column(f"{test}_power", f"{name}: power for {wanted:g}°")]
-            columns += [
-                Column(f"{test}_samples_{100 * share:.0f}", f"{name}: n for {100 * share:.0f} %") for share in WANTED
-            ]
+    columns = [
+        Column("set"),
+        Column("test", "test", False),
+        Column("sd_deg", "pooled SD (°)"),
+        Column("n", "samples a design"),
+    ]
+    columns += [Column(f"smallest_{100 * share:.0f}_deg", f"seen in {100 * share:.0f} % (°)") for share in WANTED]
+    if wanted is not None:
+        columns.append(Column("power", f"power for {wanted:g}°"))
+        columns += [Column(f"samples_{100 * share:.0f}", f"samples for {100 * share:.0f} %") for share in WANTED]
     rows = []
     for one, power in known:
-        row = [words(one.chosen.title, 70), number(power.sd, report.places), digits(power.n)]
-        for of_test in (power.anova, power.pair):
-            row += [number(value, report.places) for value in of_test.smallest]
+        for name, test in (("F test of all", power.anova), ("a pair, Tukey", power.pair)):
+            row = [words(one.chosen.title, 70), words(name), number(power.sd, report.places), digits(power.n)]
+            row += [number(value, report.places) for value in test.smallest]
             if wanted is not None:
-                row += [number(of_test.power, 3), *map(count, of_test.samples or (None, None))]
-        rows.append(tuple(row))
+                row += [number(test.power, 3), *map(count, test.samples or (None, None))]
+            rows.append(tuple(row))
     note = (
-        f"At a significance of {known[0][1].alpha:.2g} and with the scatter found here. F test: two designs differ by so much and all "
-        "others lie midway, the least that it can see."
+        f"At a significance of {known[0][1].alpha:.2g} and with the scatter found here: the difference that is seen in so many of "
+        "repeated studies. F test: two designs differ by so much and all others lie midway, the least that it can see."
     )
-    yield Table(
-        "power", "The smallest difference of two designs that such a study sees.", tuple(columns), tuple(rows), note
-    )
+    caption = "The smallest difference of two designs that such a study sees."
+    yield Table("power", caption, tuple(columns), tuple(rows), note, by="set")
 
 
 def all_warnings(report: StudyReport) -> list[tuple[str, str]]:

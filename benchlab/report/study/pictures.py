@@ -9,18 +9,19 @@ import numpy as np
 
 from benchlab.io.study_values import DesignValues
 from benchlab.report.document import Block, Pictures, Words, cut
+from benchlab.report.study.bars_figure import MOST_BRACKETED, Bar, draw_bars
 from benchlab.report.study.consistency_figure import MOST_CELLS, draw_consistency
 from benchlab.report.study.figures import (
-    MOST_BRACKETED,
+    HALF_IN,
     MOST_ROWS,
+    THIRD_IN,
+    WIDE_IN,
     AngleBand,
-    Bar,
     Interval,
     draw_angle_band,
-    draw_bars,
     draw_intervals,
 )
-from benchlab.report.study.report import ComparedSet, StudyReport, mean_of, name_of, sd_of, simulated_of
+from benchlab.report.study.report import ComparedSet, StudyReport, found_sets, mean_of, name_of, sd_of, simulated_of
 from benchlab.report.svg import panel_of
 from benchlab.stats.comparison import Comparison
 from benchlab.stats.pairs import Pair
@@ -33,22 +34,26 @@ def bars_blocks(report: StudyReport) -> Iterator[Block]:
     """Bars of each set, with brackets where the set has been compared."""
     label = f"bending angle θ at {report.values.pressure_MPa:g} MPa (°)"
     panels, many = [], False
+    bar_in = 1.0 if len(report.compared) == 1 else 0.64
     for one, name in _named(report.compared):
         bars = [bar for design in report.values.of(one.chosen) if (bar := bar_of(design)) is not None]
         if bars:
             many = many or len(bars) > MOST_BRACKETED
-            figure = draw_bars(bars, brackets_of(one.found, [bar.name for bar in bars]), label, one.chosen.title)
+            figure = draw_bars(
+                bars, brackets_of(one.found, [bar.name for bar in bars]), label, one.chosen.title, bar_in
+            )
             panels.append(panel_of(figure, f"bars_{name}", f"Bars of mean angle: {name_of(one)}"))
     if not panels:
         yield Words("No sample has a value: there is nothing to draw.")
         return
+    designs, found = report.values.designs, found_sets(report)
+    more = " Whiskers: ± 1 standard deviation between samples." * any(sd_of(design) is not None for design in designs)
+    more += " Diamonds: simulated." * any(simulated_of(design) is not None for design in designs)
+    more += f" Brackets: Tukey’s HSD within the set, {STARS_LEGEND}, else p." * bool(found)
     rows = f" Sets of more than {MOST_BRACKETED} designs lie as rows without brackets, the first {MOST_ROWS} designs of each."
     yield Pictures(
         tuple(panels),
-        "Bars: mean bending angle of the samples. Points: samples, each the mean of its cycles (n: Table 1). Whiskers: ± 1 standard "
-        f"deviation between samples. Diamonds: simulated. Brackets: Tukey’s HSD within the set, {STARS_LEGEND}, else p."
-        + rows
-        * many,
+        f"Bars: mean bending angle of the samples. Points: samples, each the mean of its cycles (n: Table 1).{more}{rows * many}",
     )
 
 
@@ -69,20 +74,21 @@ def brackets_of(found: Comparison | None, names: Sequence[str]) -> list[tuple[in
 def intervals_blocks(report: StudyReport) -> Iterator[Block]:
     """Intervals of all pairs of each set."""
     panels, cut_off = [], []
+    width = HALF_IN if len(found_sets(report)) > 1 else WIDE_IN
     for one, name in _named(report.compared):
         if one.found is None or not one.found.tukey:
             continue
         rows = [interval_of(pair, other) for pair, other in zip(one.found.tukey, one.found.games_howell)]
         if len(rows) > MOST_ROWS:
             cut_off.append(f"{name_of(one)}: the first {MOST_ROWS} of {len(rows)} pairs are drawn.")
-        figure = draw_intervals(rows, "difference of mean θ (°)", one.found.confidence, one.chosen.title)
+        figure = draw_intervals(rows, "difference of mean θ (°)", one.found.confidence, one.chosen.title, width)
         panels.append(panel_of(figure, f"intervals_{name}", f"Intervals of differences: {name_of(one)}"))
     if panels:
         caption = (
             "Differences of mean angle with simultaneous intervals for all pairs of the set: Tukey’s with one variance for all designs, "
             "Games and Howell’s with each design’s own. An interval that does not touch the line at 0 shows a difference."
         )
-        yield Pictures(tuple(panels), " ".join([caption, *cut_off]), stacked=True)
+        yield Pictures(tuple(panels), " ".join([caption, *cut_off]), stacked=len(panels) > 1)
 
 
 def interval_of(pair: Pair, other: Pair) -> Interval:
@@ -105,8 +111,11 @@ def bands_blocks(report: StudyReport) -> Iterator[Block]:
     smallest = [np.nanmin([0.0, *band.mean_deg - np.nan_to_num(band.sd_deg)]) for band in drawn]
     room = 0.05 * (max(largest) - min(smallest))
     limits = (float(min(smallest) - room), float(max(largest) + room))
+    width = THIRD_IN if len(drawn) > 2 else HALF_IN
     panels = [
-        panel_of(draw_angle_band(band, limits), f"curve_{name}", f"Angle against pressure of {cut(band.name, 40)}")
+        panel_of(
+            draw_angle_band(band, limits, width), f"curve_{name}", f"Angle against pressure of {cut(band.name, 40)}"
+        )
         for band, name in zip(drawn, file_names([band.name for band in drawn]))
     ]
     off = f" The first {MOST_BANDS} of {len(bands)} designs are drawn." if len(bands) > MOST_BANDS else ""

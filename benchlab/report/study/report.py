@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from statistics import median
 from typing import Any
 
+from scipy import special
+
 from benchlab.io.published import PublishedAngle
 from benchlab.io.study_values import DesignValues, StudySet, StudyValues
 from benchlab.report.document import Cell, cut
@@ -82,6 +84,22 @@ def sd_of(design: DesignValues) -> float | None:
     """Standard deviation between the samples, in degrees; None for fewer than two."""
     angles = design.angles_deg
     return float(angles.std(ddof=1)) if len(angles) > 1 else None
+
+
+def pooled_sd_of(report: StudyReport) -> float | None:
+    """Standard deviation of samples about the mean of their design, over all designs; None where none has two samples."""
+    several = [angles for design in report.values.designs if len(angles := design.angles_deg) > 1]
+    df = sum(len(angles) - 1 for angles in several)
+    return math.sqrt(sum(float(((angles - angles.mean()) ** 2).sum()) for angles in several) / df) if df else None
+
+
+def interval_of(design: DesignValues, confidence: float) -> tuple[float | None, float | None]:
+    """Student's interval of the mean angle with the design's own standard deviation, in degrees."""
+    mean, sd, n = mean_of(design), sd_of(design), len(design.counted)
+    if mean is None or sd is None:
+        return None, None
+    half = float(special.stdtrit(n - 1, (1 + confidence) / 2)) * sd / math.sqrt(n)
+    return mean - half, mean + half
 
 
 def simulated_of(design: DesignValues) -> float | None:

@@ -7,17 +7,17 @@ from typing import Any
 from benchlab.io.study_values import DesignValues, SampleValues
 from benchlab.report.document import Cell, Column, Table, cut
 from benchlab.report.rounding import count, number, words
-from benchlab.report.study.report import StudyReport, error_of, mean_of, sd_of, simulated_of, span_text
-from benchlab.stats.comparison_json import mean_interval
+from benchlab.report.study.report import StudyReport, error_of, interval_of, mean_of, sd_of, simulated_of, span_text
 
 
 def designs_table(report: StudyReport) -> Table:
     """A row a design: what was measured, and what was simulated."""
+    known = any(simulated_of(design) is not None for design in report.values.designs)
     columns = (
         Column("design", "design", False), Column("tw_mm"), Column("slw_mm"), Column("samples", "n"), Column("cycles", "cycles"),
         Column("mean_deg", "mean θ (°)"), Column("sd_deg", "SD (°)"), Column("mean_low_deg"), Column("mean_high_deg"),
-        Column("", f"{report.percent} interval of mean (°)"), Column("simulated_deg", "simulated (°)"),
-        Column("error_deg", "simulated − measured (°)"),
+        Column("", f"{report.percent} interval of mean (°)"), Column("simulated_deg", "simulated (°)" * known),
+        Column("error_deg", "simulated − measured (°)" * known),
     )  # fmt: skip
     sources = list(
         dict.fromkeys(cut(d.simulated.source, 120) for d in report.values.designs if d.simulated is not None)
@@ -33,8 +33,7 @@ def designs_table(report: StudyReport) -> Table:
 def _design_row(report: StudyReport, design: DesignValues) -> tuple[Cell, ...]:
     places = report.places
     mean, sd = mean_of(design), sd_of(design)
-    group = _group(report, design.name)
-    low, high = (mean_interval(group, report.confidence) if group is not None else None) or (None, None)
+    low, high = interval_of(design, report.confidence)
     shell: Any = design.shell
     return (
         words(design.name, 40), number(None if shell is None else shell.window_width_mm, 1),
@@ -45,19 +44,14 @@ def _design_row(report: StudyReport, design: DesignValues) -> tuple[Cell, ...]:
     )  # fmt: skip
 
 
-def _group(report: StudyReport, name: str) -> Any:
-    found = report.whole.found
-    return None if found is None else next((group for group in found.groups if group.name == name), None)
-
-
 def samples_table(report: StudyReport) -> Table:
     """A row a sample, also those that do not count, with why."""
+    rows = [_sample_row(report, design, sample) for design in report.values.designs for sample in design.samples]
     columns = (
         Column("design"), Column("sample", "sample", False), Column("cycles", "cycles"),
         Column("angle_deg", "θ, mean of cycles (°)"), Column("cycle_sd_deg", "SD of cycles (°)"),
-        Column("recordings", "recordings", False), Column("note", "note", False),
+        Column("recordings", "recordings", False), Column("note", "note" * any(row[-1].text for row in rows), False),
     )  # fmt: skip
-    rows = [_sample_row(report, design, sample) for design in report.values.designs for sample in design.samples]
     caption = f"Every sample: θ at {report.values.pressure_MPa:g} MPa."
     return Table("samples", caption, columns, tuple(rows), by="design")
 

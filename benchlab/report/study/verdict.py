@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from benchlab.report.document import Section, Tile, Tiles, Words, cut
 from benchlab.report.rounding import number
 from benchlab.report.study.published import paper_words
-from benchlab.report.study.report import ComparedSet, StudyReport, error_of, mean_of, name_of
+from benchlab.report.study.report import ComparedSet, StudyReport, error_of, mean_of, name_of, pooled_sd_of, sd_of
 from benchlab.stats.comparison import Comparison
 from benchlab.stats.pairs import Pair
 from benchlab.stats.repeatability import FACTOR
@@ -36,38 +36,27 @@ def verdict_words(report: StudyReport) -> list[Words]:
 
 
 def _tiles(report: StudyReport) -> Iterator[Tile]:
-    places, found = report.places, report.whole.found
+    places, found, own = report.places, report.whole.found, pooled_sd_of(report)
     means = [(mean, design.name) for design in report.values.designs if (mean := mean_of(design)) is not None]
     if means:
-        (low, first), (high, last) = min(means), max(means)
-        value = (
-            f"{number(high, places).text}°"
-            if len(means) == 1
-            else f"{number(low, places).text} to {number(high, places).text}°"
-        )
-        ends = cut(last, 24) if len(means) == 1 else f"{cut(first, 24)} to {cut(last, 24)}"
-        yield Tile(value, f"mean angle at {report.values.pressure_MPa:g} MPa", ends)
-    if found is not None:
-        limit = number(FACTOR * found.repeatability.sample_sd, places).text
+        ends = dict.fromkeys((min(means), max(means)))
+        value = " to ".join(number(mean, places).text for mean, _ in ends)
+        names = " to ".join(cut(name, 24) for _, name in ends)
+        yield Tile(f"{value}°", f"mean angle at {report.values.pressure_MPa:g} MPa", names)
+    if own is not None:
+        limit = f"two samples differ by less than {number(FACTOR * own, places).text}° in 95 % of cases"
+        yield Tile(f"± {number(own, places).text}°", "SD between samples of a design", limit)
+    tested = [pair for pair in found.tukey if pair.p is not None] if found is not None else []
+    if found is not None and tested:
+        told = sum(_differ(pair, found) for pair in tested)
         yield Tile(
-            f"± {number(found.repeatability.sample_sd, places).text}°", "SD between samples of a design",
-            f"two samples differ by less than {limit}° in 95 % of cases",
-        )  # fmt: skip
-        tested = [pair for pair in found.tukey if pair.p is not None]
-        if tested:
-            told = sum(_differ(pair, found) for pair in tested)
-            yield Tile(
-                f"{told} of {len(tested)}",
-                "pairs of designs told apart",
-                f"Tukey HSD at {1 - report.confidence:.3g}, all designs",
-            )
+            f"{told} of {len(tested)}", "pairs of designs told apart", f"Tukey HSD at {found.alpha:.3g}, all designs"
+        )
     errors = _errors(report)
-    if errors:
-        yield Tile(
-            f"{number(_rms(errors), places).text}°",
-            "error of the simulation, RMS",
-            f"{_span(errors, places)}, {_many(len(errors))}",
-        )
+    if len(errors) > 1:
+        yield Tile(f"{number(_rms(errors), places).text}°", "error of the simulation, RMS", _span(errors, places))
+    elif errors:
+        yield Tile(_span(errors, places), "error of the simulation", "simulated less measured")
 
 
 def _of_set(one: ComparedSet) -> str:
@@ -108,20 +97,18 @@ def _differ(pair: Pair, found: Comparison) -> bool:
 
 
 def _repeatability(report: StudyReport) -> str:
-    found = report.whole.found
-    if found is None:
+    own, places, found = pooled_sd_of(report), report.places, report.whole.found
+    if own is None:
         return ""
-    places, repeat = report.places, found.repeatability
-    spreads = [group.sd for group in found.groups if group.sd is not None]
-    by_design = f"; {number(min(spreads), places).text} to {number(max(spreads), places).text}° by design" * (
-        len(spreads) > 1
-    )
+    spreads = [sd for design in report.values.designs if (sd := sd_of(design)) is not None]
+    low, high = (number(sd, places).text for sd in (min(spreads), max(spreads)))
+    by_design = f" (pooled; {low} to {high}° by design)" * (low != high)
     text = (
-        f"Samples of one design scatter about its mean with SD {number(repeat.sample_sd, places).text}° (pooled{by_design}): two samples "
-        f"of a design differ by less than {number(FACTOR * repeat.sample_sd, places).text}° in 95 % of cases."
+        f"Samples of one design scatter about its mean with SD {number(own, places).text}°{by_design}: two samples of a design differ "
+        f"by less than {number(FACTOR * own, places).text}° in 95 % of cases."
     )
-    if repeat.replicate == "cycle" and repeat.pooled.s_r is not None:
-        text += f" Cycles of one sample scatter with SD {number(repeat.pooled.s_r, places + 1).text}°."
+    if found is not None and found.repeatability.replicate == "cycle":
+        text += f" Cycles of one sample scatter with SD {number(found.repeatability.pooled.s_r, places + 1).text}°."
     return text
 
 
