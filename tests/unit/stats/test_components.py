@@ -1,0 +1,94 @@
+"""Variance components: a textbook's nested ANOVA, statsmodels, simulation; and what comes out negative."""
+
+import warnings
+
+import numpy as np
+import pytest
+from statsmodels.regression.mixed_linear_model import MixedLM
+
+from benchlab.stats.anova import one_way
+from benchlab.stats.components import find_components
+from benchlab.stats.groups import groups_of
+from benchlab.stats.measurements import Measurements, measurements_of
+from benchlab.stats.reml import reml_variances
+from tests.unit.stats.samples import MOSQUITO_WINGS, PLANT_GROWTH, grouped, nested
+
+
+def test_mosquito_wings_of_sokal_and_rohlf() -> None:
+    """Biometry, Box 10.1: F 1.741 of cages over females; s² 1.30, s²(females in cages) 94.94, s²(cages) 17.71."""
+    measured = nested(MOSQUITO_WINGS)
+    groups = groups_of(measured)
+    anova = one_way(groups)
+    assert round(anova.F or 0, 3) == 1.741 and anova.df == (2, 9)
+    assert 2 * anova.ss_between == pytest.approx(665.68, abs=0.005)
+    assert 2 * anova.ss_within == pytest.approx(1720.68, abs=0.005)
+    found = find_components(groups, measured.cycles())
+    assert found.method == "EMS" and found.cycle is not None
+    assert found.cycle.variance == pytest.approx(1.30, abs=0.005) and found.cycle.df == 12
+    assert found.sample.variance == pytest.approx(94.94, abs=0.005)
+    assert found.design.variance == pytest.approx(17.71, abs=0.005)
+
+
+def test_reml_is_ems_where_samples_have_as_many_cycles() -> None:
+    measured = nested(MOSQUITO_WINGS)
+    found = find_components(groups_of(measured), measured.cycles())
+    assert found.cycle is not None
+    assert reml_variances(measured.cycles()) == (
+        pytest.approx(found.cycle.variance, rel=1e-4),
+        pytest.approx(found.sample.variance, rel=1e-4),
+    )
+
+
+def test_unlike_numbers_of_cycles_as_statsmodels_fits_them() -> None:
+    measured = drawn(1, (3, 7))
+    found = find_components(groups_of(measured), measured.cycles())
+    assert found.method == "REML" and found.cycle is not None
+    group, sample = np.array(measured.groups), np.array(measured.samples)
+    exog = (group[:, None] == np.unique(group)).astype(float)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        fit = MixedLM(measured.deviations, exog, groups=np.char.add(group, sample)).fit(reml=True, method="powell")
+    assert found.cycle.variance == pytest.approx(fit.scale, rel=1e-3)
+    assert found.sample.variance == pytest.approx(float(fit.cov_re[0, 0]), rel=1e-3)
+
+
+@pytest.mark.parametrize("cycles", [(6, 6), (3, 9)])
+def test_intervals_hold_the_truth(cycles: tuple[int, int]) -> None:
+    """Truth 0.5 within and 3 between samples; 95 % intervals of 60 drawn studies (chance of fewer than 50: 1 in 10,000)."""
+    held = np.zeros(2)
+    for seed in range(60):
+        measured = drawn(seed, cycles)
+        found = find_components(groups_of(measured), measured.cycles())
+        for index, (component, truth) in enumerate(((found.cycle, 0.5), (found.sample, 3.0))):
+            assert component is not None and component.low is not None and component.high is not None
+            held[index] += component.low <= truth <= component.high
+    assert (held >= 50).all()
+
+
+def test_without_cycles_the_lowest_component_is_that_of_samples() -> None:
+    groups = grouped(PLANT_GROWTH)
+    found = find_components(groups, None)
+    assert found.cycle is None and found.sample.variance == one_way(groups).ms_within
+    ss = one_way(groups).ss_within  # chi-square with 27 degrees of freedom: 14.573 and 43.195, as tables print them
+    assert found.sample.low == pytest.approx((ss / 43.195) ** 0.5, rel=1e-4)
+    assert found.sample.high == pytest.approx((ss / 14.573) ** 0.5, rel=1e-4)
+
+
+def test_a_negative_component_is_set_to_zero_and_told() -> None:
+    measured = nested({"a": {"1": "1 9", "2": "9 1"}, "b": {"1": "2 8.1", "2": "8 2"}})
+    found = find_components(groups_of(measured), measured.cycles())
+    assert found.sample.variance == 0 and found.sample.raw < 0 and found.sample.sd == 0
+    assert "between samples came out negative" in found.warnings[0]
+
+
+def drawn(seed: int, cycles: tuple[int, int]) -> Measurements:
+    """Four designs of five samples (SD 3) with a number of cycles (SD 0.5) between these two."""
+    rng = np.random.default_rng(seed)
+    rows = [
+        (f"d{d}", f"s{s}", value)
+        for d in range(4)
+        for s in range(5)
+        for value in 10 * d + rng.normal(0, 3) + rng.normal(0, 0.5, rng.integers(cycles[0], cycles[1] + 1))
+    ]
+    groups, samples, values = zip(*rows)
+    return measurements_of(groups, values, samples)
