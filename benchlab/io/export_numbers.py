@@ -169,7 +169,7 @@ class _Cells:
         where, name = f"line {line}", f"column {printable(self.label)}: " if self.label else ""
         if len(cell) > MAX_NUMBER:
             what = f"{name}cell of {len(cell)} characters, a number has at most {MAX_NUMBER}"
-            raise InputError(what, file=self.path, where=where)
+            raise InputError(what, file=self.path, where=where, hint="export it again, or mend the cell")
         if not re.fullmatch(NUMBER, cell):
             if _WITH_UNIT.fullmatch(cell):
                 hint = "put the unit in the header, as in Load (N)"

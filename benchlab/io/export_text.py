@@ -89,7 +89,7 @@ def split_lines(path: Path, lines: Sequence[str], separator: str) -> tuple[list[
     rows = []
     for number, cells in enumerate(_cells(lines, separator, unpaired), 1):
         if len(cells) > MAX_COLUMNS:
-            raise _many(path, number, len(cells))
+            raise _many(path, number)
         stripped = [cell.strip() for cell in cells]
         if any(stripped):
             rows.append((number, stripped))
@@ -171,10 +171,12 @@ def _check_first_line(path: Path, data: bytes) -> None:
 
 
 def _too_long(path: Path, number: int, line: str, separator: str) -> InputError:
-    if (columns := line.count(separator) + 1) > MAX_COLUMNS:
-        return _many(path, number, columns)
-    return InputError(f"line longer than {MAX_LINE} characters", file=path, where=f"line {number}")
+    if line.count(separator) + 1 > MAX_COLUMNS:
+        return _many(path, number)
+    hint = "are there ends of lines in it?"
+    return InputError(f"line longer than {MAX_LINE} characters", file=path, where=f"line {number}", hint=hint)
 
 
-def _many(path: Path, number: int, columns: int) -> InputError:
-    return InputError(f"{columns} columns, more than the limit of {MAX_COLUMNS}", file=path, where=f"line {number}")
+def _many(path: Path, number: int) -> InputError:
+    hint = "export the columns of force, extension and time alone"
+    return InputError(f"more than {MAX_COLUMNS} columns", file=path, where=f"line {number}", hint=hint)
