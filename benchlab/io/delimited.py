@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import IO
 
 from benchlab.errors import InputError
+from benchlab.io.encoding import check_text, unicode_encoding
 from benchlab.io.files import check_regular_file
 
 MAX_BYTES = 200_000_000
@@ -23,20 +24,6 @@ MAX_LINE = 100_000
 """Limits: bytes in a file, columns, characters in a line."""
 
 _DELIMITERS = ("\t", ";", ",")
-_NOT_TEXT = (
-    (b"PK\x03\x04", "an Excel file or a zip archive", "save it as CSV"),
-    (b"\xd0\xcf\x11\xe0", "an Excel file of the old kind", "save it as CSV"),
-    (b"\x1f\x8b", "compressed (gzip)", "unpack it first"),
-    (b"BZh", "compressed (bzip2)", "unpack it first"),
-    (b"\xfd7zXZ\x00", "compressed (xz)", "unpack it first"),
-    (b"\x28\xb5\x2f\xfd", "compressed (zstandard)", "unpack it first"),
-    (b"\x89HDF", "an HDF5 file", None),
-    (b"%PDF", "a PDF", None),
-    (b"\x89PNG", "a picture", None),
-    (b"\xff\xd8\xff", "a picture", None),
-    (b"\x1a\x45\xdf\xa3", "a video", None),
-    (b"RIFF", "a video or sound", None),
-)
 
 
 @dataclass
@@ -104,15 +91,9 @@ def encoding_of(path: Path) -> str:
     """Encoding by byte order mark, by the zeros of plain UTF-16, or UTF-8 where all bytes fit it, else Latin-1."""
     with path.open("rb") as file:
         head = file.read(4096)
-        _check_text(path, head)
-        if head.startswith(codecs.BOM_UTF8):
-            return "utf-8-sig"
-        if head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-            return "utf-16"
-        if len(head) >= 4 and 0 not in head[0:64:2] and not any(head[1:64:2]):
-            return "utf-16-le"
-        if len(head) >= 4 and 0 not in head[1:64:2] and not any(head[0:64:2]):
-            return "utf-16-be"
+        check_text(path, head)
+        if found := unicode_encoding(head):
+            return found
         decoder = codecs.getincrementaldecoder("utf-8")()
         file.seek(0)
         try:
@@ -122,17 +103,6 @@ def encoding_of(path: Path) -> str:
         except UnicodeDecodeError:
             return "latin-1"
     return "utf-8"
-
-
-def _check_text(path: Path, head: bytes) -> None:
-    for magic, kind, hint in _NOT_TEXT:
-        if head.startswith(magic):
-            raise InputError(f"this is {kind}, not a text table", file=path, hint=hint)
-    if head[4:8] == b"ftyp":
-        raise InputError("this is a video, not a text table", file=path)
-    start = head.lstrip(codecs.BOM_UTF8 + b" \t\r\n")[:100].lower()
-    if start.startswith((b"<!doctype html", b"<html", b"<?xml", b"<head")):
-        raise InputError("this is a web page, not a text table", file=path, hint="was a login page saved instead?")
 
 
 def _sniff_delimiter(lines: Lines) -> tuple[list[tuple[int, str]], str]:
