@@ -141,6 +141,7 @@ def _peak(
         around = force[max(0, cycle.rise - window) : cycle.fall + 1 + window]
         left = cycle.rise - max(0, cycle.rise - window)
         smooth = savgol_filter(median_filter(around, 3, mode="nearest"), window, 2)[left : left + len(loaded)]
+        smooth = np.minimum(smooth, loaded.max())  # a parabola swings over at a corner
         gain = float(np.square(savgol_coeffs(window, 2)).sum())
     top = int(np.argmax(smooth))
     level, sd = zero.at(cycle.rise + top)
