@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from benchlab.report.document import Cell, Column, Table, cut
-from benchlab.report.rounding import NONE, count, decimals_of, digits, number, words
+from benchlab.report.document import NONE, Cell, Column, Table, cut
+from benchlab.report.rounding import count, decimals_of, digits, number, words
 from benchlab.stats.comparison import Comparison
 from benchlab.stats.comparison_json import mean_interval
 from benchlab.stats.components import Component
@@ -149,12 +149,13 @@ def _component(
 
 def consistency_table(found: Comparison, value: str, places: int) -> Table:
     """h and k of every cell; on the terminal only those beyond a critical value."""
-    columns = (
-        Column("group", "group", False), Column("laboratory", "sample", False), Column("n", "n"), Column(f"mean_{value}", "mean"),
-        Column(f"sd_{value}", "SD"), Column("h", "h"), Column("h_critical", "critical"), Column("k", "k"),
-        Column("k_critical", "critical"), Column("outside"),
-    )  # fmt: skip
     nested = found.repeatability.replicate == "cycle"
+    columns = (
+        Column("group", "group", False), Column("sample" * nested, "sample" * nested, False), Column("n", "n"),
+        Column(f"mean_{value}", "mean"), Column(f"sd_{value}", "SD"), Column("h" * nested, "h" * nested),
+        Column("h_critical" * nested, "critical" * nested), Column("k", "k"), Column("k_critical", "critical"),
+        Column("outside"),
+    )  # fmt: skip
     rows = tuple(
         (
             words(cell.level if nested else cell.laboratory, 30), words(cell.laboratory if nested else "", 30), count(cell.n),
