@@ -15,6 +15,9 @@ from benchlab.io.table import guarded
 
 Value = str | float | int | None
 
+NONE = "–"
+"""What stands on the page where there is no value."""
+
 
 class Cell(NamedTuple):
     """A value as a machine reads it, and as a person does."""
@@ -49,13 +52,21 @@ class Table:
     @property
     def heads(self) -> tuple[Column, ...]:
         """The columns of the page."""
-        return tuple(column for column in self.columns if column.head)
+        return tuple(self.columns[index] for index in self._kept)
 
     @property
     def shown(self) -> tuple[tuple[str, ...], ...]:
         """The texts of the page, row by row."""
-        kept = [index for index, column in enumerate(self.columns) if column.head]
-        return tuple(tuple(row[index].text for index in kept) for row in self.rows[: self.most])
+        return tuple(tuple(row[index].text for index in self._kept) for row in self.rows[: self.most])
+
+    @property
+    def _kept(self) -> list[int]:
+        """Columns with a head and, of a table with rows, with something in them."""
+        return [
+            index
+            for index, column in enumerate(self.columns)
+            if column.head and (not self.rows or any(row[index].text not in ("", NONE) for row in self.rows))
+        ]
 
     @property
     def lines(self) -> tuple[str, ...]:

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import math
 
-from benchlab.report.document import Cell, cut
-
-NONE = "–"
+from benchlab.report.document import NONE, Cell, cut
 
 
 def decimals_of(uncertainty: float | None) -> int:

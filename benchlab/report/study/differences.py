@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from benchlab.report.document import Block, Cell, Column, Table, Words, cut
-from benchlab.report.rounding import NONE, count, digits, number, words
+from benchlab.report.document import NONE, Block, Cell, Column, Table, Words, cut
+from benchlab.report.rounding import count, digits, number, words
 from benchlab.report.study.report import ComparedSet, StudyReport, found_sets, joined, name_of, probability, span_text
 from benchlab.stats.comparison import Comparison
 from benchlab.stats.pairs import Pair
@@ -78,7 +78,7 @@ def _pair_row(one: ComparedSet, pair: Pair, other: Pair, places: int) -> tuple[C
 
 def assumptions_table(report: StudyReport) -> Table:
     """A row a set: Levene and Shapiro–Wilk."""
-    columns: tuple[Column, ...] = (
+    columns = (
         Column("set", "set", False), Column("levene_F", "Levene F"), Column("levene_p", "Levene p"),
         Column("shapiro_W", "Shapiro–Wilk W"), Column("shapiro_p", "Shapiro–Wilk p"), Column("note", "note", False),
     )  # fmt: skip
@@ -89,8 +89,6 @@ def assumptions_table(report: StudyReport) -> Table:
         rows.append((
             words(one.chosen.title, 70), digits(levene.F), probability(levene.p), digits(shapiro.W), probability(shapiro.p), words(why, 90),
         ))  # fmt: skip
-    if not any(row[-1].value for row in rows):
-        columns, rows = columns[:-1], [row[:-1] for row in rows]
     note = (
         "Equal variances (Brown and Forsythe’s form of Levene’s test, about medians) and normal residuals. Reported, not used to "
         "choose a test: with so few samples they see little, so both kinds of test are always given."

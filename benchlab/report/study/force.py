@@ -9,9 +9,9 @@ from benchlab.errors import BenchlabError
 from benchlab.force.curve import BlockedForce
 from benchlab.io.published import BLOCKED_FORCE
 from benchlab.io.study_values import DesignValues
-from benchlab.report.document import Block, Cell, Column, Pictures, Section, Table, Words, cut
+from benchlab.report.document import NONE, Block, Cell, Column, Pictures, Section, Table, Words, cut
 from benchlab.report.force_figure import draw_force_panel, linearity_words
-from benchlab.report.rounding import NONE, count, digits, number, words
+from benchlab.report.rounding import count, digits, number, words
 from benchlab.report.study.pictures import file_names
 from benchlab.report.study.report import StudyReport, probability, span_text
 from benchlab.report.svg import panel_of

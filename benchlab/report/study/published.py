@@ -9,8 +9,8 @@ from benchlab.actuator import ShellDesign
 from benchlab.errors import BenchlabError
 from benchlab.io.published import PublishedAngle
 from benchlab.io.study_values import DesignValues
-from benchlab.report.document import Block, Cell, Column, Section, Table, Words, cut
-from benchlab.report.rounding import NONE, count, number, words
+from benchlab.report.document import NONE, Block, Cell, Column, Section, Table, Words, cut
+from benchlab.report.rounding import count, number, words
 from benchlab.report.study.report import PublishedSet, StudyReport, mean_of, probability, sd_of, span_text
 from benchlab.stats.comparison import compare_summaries
 from benchlab.stats.pairs import Pair
@@ -51,14 +51,19 @@ def paper_words(report: StudyReport) -> str:
         return ""
     figures = " and ".join(dict.fromkeys(pair.figure for pair in shared))
     others = [pair for pair in shared if not pair.agrees]
+    marks = [pair for pair in shared if pair.agrees and stars(pair.here.p) != stars(pair.paper.p)]
+    starred = "; ".join(
+        f"{cut(pair.a, 30)} and {cut(pair.b, 30)} earn {stars(pair.here.p) or 'none'} here ({p_equals(pair.here.p)}), "
+        f"{stars(pair.paper.p) or 'none'} by the published table ({p_equals(pair.paper.p)})"
+        for pair in marks
+    )
+    more = f" Stars differ: {starred}." * bool(marks)
     if not others:
-        return f"As in the paper ({figures}), each of the {len(shared)} pairs compared there differs, in the same direction."
+        return f"As in the paper ({figures}), each of the {len(shared)} pairs compared there differs, in the same direction.{more}"
     listed = "; ".join(
         f"{cut(pair.a, 30)} and {cut(pair.b, 30)} {_found_here(pair)} ({p_equals(pair.here.p)})" for pair in others
     )
-    return (
-        f"Of {len(shared)} pairs that the paper compares ({figures}), {len(others)} come out otherwise here: {listed}."
-    )
+    return f"Of {len(shared)} pairs that the paper compares ({figures}), {len(others)} come out otherwise here: {listed}.{more}"
 
 
 def shared_pairs(report: StudyReport) -> list[SharedPair]:

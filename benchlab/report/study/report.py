@@ -12,8 +12,8 @@ from scipy import special
 
 from benchlab.io.published import PublishedAngle
 from benchlab.io.study_values import DesignValues, StudySet, StudyValues
-from benchlab.report.document import Cell, cut
-from benchlab.report.rounding import NONE, decimals_of, number
+from benchlab.report.document import NONE, Cell, cut
+from benchlab.report.rounding import decimals_of, number
 from benchlab.stats.comparison import Comparison
 from benchlab.stats.studentized_range import FLOOR
 from benchlab.stats.wording import p_text

@@ -12,12 +12,11 @@ from benchlab.report.study.report import StudyReport, error_of, interval_of, mea
 
 def designs_table(report: StudyReport) -> Table:
     """A row a design: what was measured, and what was simulated."""
-    known = any(simulated_of(design) is not None for design in report.values.designs)
     columns = (
         Column("design", "design", False), Column("tw_mm"), Column("slw_mm"), Column("samples", "n"), Column("cycles", "cycles"),
         Column("mean_deg", "mean θ (°)"), Column("sd_deg", "SD (°)"), Column("mean_low_deg"), Column("mean_high_deg"),
-        Column("", f"{report.percent} interval of mean (°)"), Column("simulated_deg", "simulated (°)" * known),
-        Column("error_deg", "simulated − measured (°)" * known),
+        Column("", f"{report.percent} interval of mean (°)"), Column("simulated_deg", "simulated (°)"),
+        Column("error_deg", "simulated − measured (°)"),
     )  # fmt: skip
     sources = list(
         dict.fromkeys(cut(d.simulated.source, 120) for d in report.values.designs if d.simulated is not None)
@@ -50,7 +49,7 @@ def samples_table(report: StudyReport) -> Table:
     columns = (
         Column("design"), Column("sample", "sample", False), Column("cycles", "cycles"),
         Column("angle_deg", "θ, mean of cycles (°)"), Column("cycle_sd_deg", "SD of cycles (°)"),
-        Column("recordings", "recordings", False), Column("note", "note" * any(row[-1].text for row in rows), False),
+        Column("recordings", "recordings", False), Column("note", "note", False),
     )  # fmt: skip
     caption = f"Every sample: θ at {report.values.pressure_MPa:g} MPa."
     return Table("samples", caption, columns, tuple(rows), by="design")

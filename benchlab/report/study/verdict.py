@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
+from benchlab.force.curve import BlockedForce
 from benchlab.report.document import Section, Tile, Tiles, Words, cut
-from benchlab.report.rounding import number
+from benchlab.report.rounding import decimals_of, number
 from benchlab.report.study.published import paper_words
 from benchlab.report.study.report import ComparedSet, StudyReport, error_of, mean_of, name_of, pooled_sd_of, sd_of
 from benchlab.stats.comparison import Comparison
@@ -40,7 +41,7 @@ def _tiles(report: StudyReport) -> Iterator[Tile]:
     means = [(mean, design.name) for design in report.values.designs if (mean := mean_of(design)) is not None]
     if means:
         ends = dict.fromkeys((min(means), max(means)))
-        value = " to ".join(number(mean, places).text for mean, _ in ends)
+        value = "–".join(number(mean, places).text for mean, _ in ends)
         names = " to ".join(cut(name, 24) for _, name in ends)
         yield Tile(f"{value}°", f"mean angle at {report.values.pressure_MPa:g} MPa", names)
     if own is not None:
@@ -52,11 +53,25 @@ def _tiles(report: StudyReport) -> Iterator[Tile]:
         yield Tile(
             f"{told} of {len(tested)}", "pairs of designs told apart", f"Tukey HSD at {found.alpha:.3g}, all designs"
         )
+    forces = [design for design in report.values.designs if design.force is not None]
+    if len(forces) == 1:
+        force = forces[0].force
+        value, pressure = _force(force), f"at {force.pressure_MPa[-1]:g} MPa"
+        yield Tile(
+            value, f"blocked force {pressure}", f"{cut(forces[0].name, 24)}, mean ± SD of {force.n[-1]} actuators"
+        )
     errors = _errors(report)
     if len(errors) > 1:
         yield Tile(f"{number(_rms(errors), places).text}°", "error of the simulation, RMS", _span(errors, places))
     elif errors:
         yield Tile(_span(errors, places), "error of the simulation", "simulated less measured")
+
+
+def _force(force: BlockedForce) -> str:
+    mean, sd = float(force.over_actuators_N[-1]), float(force.sd_N[-1])
+    places = decimals_of(sd) if math.isfinite(sd) else 1
+    spread = f" ± {number(sd, places).text}" * math.isfinite(sd)
+    return f"{'≥ ' * bool(force.lower_bound[:, -1].any())}{number(mean, places).text}{spread} N".replace(" ", "\u00a0")
 
 
 def _of_set(one: ComparedSet) -> str:
