@@ -15,17 +15,18 @@ from benchlab.workflows import sample_data
 
 ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-GUIDES = "\n".join((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8") for name in ("see", "predict"))
+GUIDES = "\n".join((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8") for name in ("see", "predict", "compare"))
 SHELL = "\n".join(re.findall(r"```sh\n(.*?)```", README + GUIDES, re.DOTALL))
 COMMANDS = sorted(set(re.findall(r"benchlab [a-z][^&\n]*", SHELL)))
-REFUSE_TO_REPLACE = ("calibrate", "cut", "design", "export", "fit-material")
+REFUSE_TO_REPLACE = ("calibrate", "cut", "design", "export", "fit-material", "stats")
 
 
 @pytest.fixture(scope="module")
 def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with sample_data in it, and with pictures of a chessboard held at several angles."""
     folder = tmp_path_factory.mktemp("clone")
-    (folder / "sample_data").symlink_to(ROOT / "sample_data")
+    for part in ("sample_data", "benchlab"):
+        (folder / part).symlink_to(ROOT / part)
     (folder / "board").mkdir()
     flat = np.full((760, 1060), 255, np.uint8)
     for row in range(7):
