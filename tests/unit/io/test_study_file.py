@@ -67,7 +67,8 @@ def test_what_is_nearer_to_a_recording_wins(tmp_path: Path) -> None:
     shared = {"ramp": "0:0.35:2.5", "markers": 10, "reference_mm": 50, "lens": lens, "length_mm": 180}
     assert settings(study) == shared
     assert settings(study, 1) == {
-        "reference_mm": 50, "reference_px": [1, 2, 3, 4], "lens": lens, "pressure": str(tmp_path / "logs/p.csv"), "length_mm": 120, "fast": True,
+        "reference_mm": 50, "reference_px": [1, 2, 3, 4], "lens": lens, "pressure": str(tmp_path / "logs/p.csv"),
+        "length_mm": 120, "fast": True,
     }  # fmt: skip
     assert settings(study, 1, 0, 1) == {
         "ramp": "0:0.1:1",

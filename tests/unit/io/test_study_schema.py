@@ -102,7 +102,13 @@ def test_says_all_that_is_wrong_at_once_each_with_its_line(tmp_path: Path) -> No
     text = GOOD.replace("0.35\n", "-1\n").replace(RAMP, "markers: 2, colour: pink").replace(SHELL, "{tw_mm: 3}")
     with pytest.raises(InputError, match="4 things are wrong") as caught:
         read_study(write_study(tmp_path, text))
-    for words in ("line 2: pressure_MPa", "line 3: analysis.markers", "line 3: analysis.colour", "line 6: designs.tw3_slw5.shell"):  # fmt: skip
+    places = (
+        "line 2: pressure_MPa",
+        "line 3: analysis.markers",
+        "line 3: analysis.colour",
+        "line 6: designs.tw3_slw5.shell",
+    )
+    for words in places:
         assert words in str(caught.value)
     text = GOOD.replace(SET, "slw: [a, b]").replace("b1.mp4", "a1.mp4").replace("      s2:", "      S1:")
     with pytest.raises(InputError, match="4 things are wrong"):
