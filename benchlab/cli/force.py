@@ -12,9 +12,11 @@ from benchlab.cli.options import Finite
 from benchlab.cli.ranges import Values
 from benchlab.errors import BatchError, InputError, UsageError, printable
 
+SUFFIXES = (".csv", ".tsv", ".txt")
+
 
 @click.command(short_help="Exports of testing machines; blocked force against pressure.")
-@click.argument("files", metavar="FILE...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.argument("files", metavar="FILE|FOLDER...", nargs=-1, required=True, type=click.Path(path_type=Path))
 @click.option(
     "--columns", metavar="NAMES", help="What the columns are, as `force_N,pressure_kPa,time_s,-`; `-` for one not used."
 )
@@ -55,7 +57,8 @@ def force(
     """Read raw exports of testing machines (Bluehill 2, 3, Universal in any language; tables with units) and write them in N, mm and s.
 
     Where the pressure of each cycle is known, blocked force too: from a column of pressure in the file, a log (--pressure), or the stated
-    steps (--steps-MPa), each with the same number of cycles. A file is an actuator; so is each specimen of a file with several.
+    steps (--steps-MPa), each with the same number of cycles. A file is an actuator; so is each specimen of a file with several. A folder
+    stands for the .csv, .tsv and .txt files in it.
 
     \b
     Written to --out:
@@ -74,12 +77,13 @@ def force(
     \b
     Examples:
       benchlab force Specimen_RawData_1.csv --out results
-      benchlab force a1.csv a2.csv a3.csv --steps-MPa 0.035:0.35:0.035 --cycles 5 --lever-arm-mm 180 --out results
+      benchlab force exports --steps-MPa 0.035:0.35:0.035 --cycles 5 --lever-arm-mm 180 --out results
       benchlab force a1.csv a2.csv --pressure log1.csv --pressure log2.csv --actuator A1 --actuator A2
       benchlab force muscle.csv --columns force_N,pressure_kPa,time_s,- --json
     """
     from benchlab.workflows.force import force as run
 
+    files = _expanded(files)
     found = run(_inputs(files, logs, actuators), out, _settings(options), overwrite)
     _tell(found)
     if as_json:
@@ -94,6 +98,20 @@ def force(
         click.echo("benchlab: there are warnings, and --strict was given", err=True)
         return InputError.exit_code
     return 0
+
+
+def _expanded(paths: tuple[Path, ...]) -> tuple[Path, ...]:
+    """Files as they are; for a folder, the tables in it by name."""
+    files: list[Path] = []
+    for path in paths:
+        if not path.is_dir():
+            files.append(path)
+            continue
+        inside = sorted(p for p in path.iterdir() if p.suffix.lower() in SUFFIXES and not p.name.startswith("."))
+        if not inside:
+            raise UsageError("no export in this folder", file=path, hint=f"looked for {', '.join(SUFFIXES)}")
+        files += inside
+    return tuple(files)
 
 
 def _inputs(files: tuple[Path, ...], logs: tuple[Path, ...], actuators: tuple[str, ...]) -> list[Any]:

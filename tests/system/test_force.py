@@ -189,6 +189,14 @@ def test_bad_files_are_listed_and_do_not_stop_the_rest(tmp_path: Path, benchlab)
     assert alone.code == 3 and "video" in alone.err and alone.json["error"]["code"] == 3
 
 
+def test_a_folder_stands_for_the_exports_in_it(tmp_path: Path, benchlab) -> None:
+    done = benchlab("force", SAMPLES / "force", *STEPS, "--out", tmp_path, "--json")
+    assert done.json["blocked_force"]["actuators"] == [path.stem for path in FILES]
+    (tmp_path / "none").mkdir()
+    empty = benchlab("force", tmp_path / "none")
+    assert empty.code == 2 and "no export in this folder" in empty.err
+
+
 # The rows of bad inputs about what a force means.
 
 
