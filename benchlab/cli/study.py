@@ -100,11 +100,12 @@ def _tell_new(found: dict[str, Any], chosen: bool) -> None:
 
 
 @study.command(short_help="What a study file has, and what is missing.")
-@click.argument("file", metavar="STUDY.yaml", type=click.Path(path_type=Path))
+@click.argument("file", metavar="STUDY", type=click.Path(path_type=Path))
 @click.option("--json", "as_json", is_flag=True, help="One JSON document on standard output.")
 def check(file: Path, as_json: bool) -> int:
     """List what a study has and what it lacks, without analysing anything: recordings and force files that are missing or cannot be
-    opened, unknown pressures, copies, designs with fewer than two samples, simulations that do not fit.
+    opened, unknown pressures, copies, designs with fewer than two samples, simulations that do not fit. STUDY is the file, or a
+    folder with `study.yaml` in it.
 
     The exit code is 0 when all is there, 4 when something is missing, and 3 when the file itself is wrong.
 

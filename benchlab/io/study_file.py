@@ -27,6 +27,8 @@ from benchlab.io.study_schema import DesignDocument, StudyDocument
 from benchlab.io.study_values import ALL_DESIGNS, StudySet
 from benchlab.io.yaml_file import read_document
 
+STUDY_FILE = "study.yaml"
+
 HOLD_TOLERANCE = 0.01
 """Share of the study's pressure within which it counts as held, where the study does not say."""
 
@@ -104,7 +106,11 @@ class Study:
 
 
 def read_study(path: Path) -> Study:
-    """The study in a YAML file. Raises UsageError for a missing file, InputError naming line and key of all that is wrong."""
+    """The study in a YAML file, or in the `study.yaml` of a folder.
+
+    Raises UsageError for a missing file, InputError naming line and key of all that is wrong.
+    """
+    path = path / STUDY_FILE if path.is_dir() else path
     document = read_document(path, StudyDocument)
     designs = tuple(_design(path, name, item, document.analysis) for name, item in document.designs.items())
     sets = [

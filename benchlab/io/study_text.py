@@ -7,12 +7,13 @@ import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
+from pathlib import Path, PurePath
 
 from benchlab.actuator import DIMENSIONS, ShellDesign
 from benchlab.errors import BenchlabError, InputError, printable
 from benchlab.io.files import cannot_write, written_whole
 from benchlab.io.study_file import Study, read_study
+from benchlab.io.study_parts import kind_of
 from benchlab.io.study_values import StudySet
 
 ABOUT = """\
@@ -47,6 +48,12 @@ class StudyDraft:
     notes: str = ""
     unused: Sequence[tuple[str, str]] = ()
 
+    @property
+    def pressure_known(self) -> bool:
+        """Whether it tells the pressure in its videos, or has none."""
+        files = (file for design in self.designs for made in design.samples.values() for file in made)
+        return bool({"ramp", "pressure"} & self.analysis.keys()) or all(kind_of(PurePath(f)) != "video" for f in files)
+
 
 def write_study(path: Path, draft: StudyDraft) -> Study:
     """Write a study file, whole or not at all, and only one that reads back. Raises InputError."""
@@ -80,6 +87,10 @@ def study_text(draft: StudyDraft, name: str = "study.yaml") -> str:
         lines += ["notes: >-", *(f"  {line}" for line in textwrap.wrap(draft.notes, 110, break_on_hyphens=False))]
     lines += [f"pressure_MPa: {draft.pressure_MPa:.9g}  # at which the designs are compared", ""]
     lines += _analysis(draft.analysis)
+    if not draft.pressure_known:
+        lines += [
+            "# The pressure is not known yet: give `ramp: START:END:SECONDS` in MPa, or `pressure: LOG.csv`, under analysis."
+        ]
     lines += ["", "designs:"]
     for design in draft.designs:
         lines += _design(design)
@@ -101,8 +112,6 @@ def _analysis(settings: Mapping[str, object]) -> Iterator[str]:
     if settings:
         yield "analysis:"
         yield from (f"  {name}: {_value(value)}" for name, value in settings.items())
-    if not {"ramp", "pressure"} & settings.keys():
-        yield "# The pressure is not known yet: give `ramp: START:END:SECONDS` in MPa, or `pressure: LOG.csv`, under analysis."
 
 
 def _design(design: DesignDraft) -> Iterator[str]:

@@ -15,7 +15,7 @@ from benchlab.errors import BenchlabError, InputError, UsageError
 from benchlab.io.files import check_new_file, check_regular_file
 from benchlab.io.pressure import MAX_PRESSURE_MPA, ramp
 from benchlab.io.stills import natural_key
-from benchlab.io.study_file import StudyDesign, StudySimulated
+from benchlab.io.study_file import STUDY_FILE, StudyDesign, StudySimulated
 from benchlab.io.study_text import DesignDraft, StudyDraft, write_study
 from benchlab.workflows.study_folder import Contents, look_into
 from benchlab.workflows.study_pattern import NamePattern, choose_pattern
@@ -59,7 +59,7 @@ def new_study(folder: Path, out: Path | None, wish: NewStudy, overwrite: bool = 
 
     out: None for `study.yaml` in the folder. Raises UsageError and InputError; then nothing is written.
     """
-    path = folder / "study.yaml" if out is None else out
+    path = folder / STUDY_FILE if out is None else out
     contents = look_into(folder)
     check_new_file(path, overwrite)
     if wish.ramp and wish.pressure:
@@ -76,7 +76,7 @@ def new_study(folder: Path, out: Path | None, wish: NewStudy, overwrite: bool = 
         "recordings": sum(len(sample.recordings) for design in study.designs for sample in design.samples),
         "designs": [_told(design) for design in study.designs],
         "sets": [vars(chosen) | {"designs": list(chosen.designs)} for chosen in draft.sets],
-        "pressure_known": bool(wish.ramp or wish.pressure),
+        "pressure_known": draft.pressure_known,
         "unused": [{"file": file, "why": why} for file, why in draft.unused],
     }
 

@@ -139,5 +139,5 @@ def test_the_ranges_are_those_of_the_analysis(tmp_path: Path, name: str) -> None
 def test_a_missing_file_is_usage(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="no such file"):
         read_study(tmp_path / "none.yaml")
-    with pytest.raises(UsageError, match="is a folder"):
+    with pytest.raises(UsageError, match=r"study\.yaml: no such file"):
         read_study(tmp_path)
