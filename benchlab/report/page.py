@@ -8,6 +8,8 @@ from importlib.resources import files
 from benchlab.report.document import Block, Document, Items, Panel, Pictures, Table, Tiles, Words
 from benchlab.report.svg import inline_svg
 
+# Where a line must not be broken: within `p = 0.04`, `3 mm` and `2e-5`.
+_EXPONENT = re.compile(r"(?<=\de-)(?=\d)")
 _BINDS = re.compile(r"(?<=\bp) (?=[<=])|(?<=\bp [<=]) |(?<=\d) (?=mm|MPa|%)")
 
 
@@ -29,7 +31,7 @@ def render_page(document: Document) -> str:
         lstrip_blocks=True,
     )
     environment.filters["inline"] = inline
-    environment.filters["bound"] = lambda text: _BINDS.sub("\u00a0", text)
+    environment.filters["bound"] = lambda text: _EXPONENT.sub("\u2060", _BINDS.sub("\u00a0", text))
     for name, kind in {"words": Words, "tiles": Tiles, "items": Items, "pictures": Pictures}.items():
         environment.tests[name] = lambda block, kind=kind: isinstance(block, kind)
     page = environment.get_template("report.html.j2")

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from benchlab.errors import BenchlabError
-from benchlab.io.files import sha256
 from benchlab.io.published import PublishedAngle, published_angles
 from benchlab.io.study_file import Study, read_study
 from benchlab.io.study_values import StudySet, StudyValues
@@ -23,6 +23,9 @@ from benchlab.workflows.report_outputs import NUMBERS, PAGE, PDF, ReportOutputs,
 from benchlab.workflows.study_values import Progress, collect
 
 STUDY_FILE = "study.yaml"
+
+LIBRARIES = ("numpy", "scipy", "matplotlib", "jinja2")
+"""Of which a report names the versions."""
 
 
 def report(
@@ -49,7 +52,7 @@ def report(
     with outputs.locked():
         values = collect(asked, out, jobs, progress, overwrite)
         found = report_of(values, published_angles(), confidence, difference_deg)
-        found.provenance["study"] = {"file": str(asked.path), "sha256": sha256(asked.path)}
+        found.provenance["study"] = str(asked.path)
         document = study_document(found)
         outputs = replace(outputs, names=names_of(document, pdf))
         outputs.check(overlay=False, inputs=read)
@@ -78,12 +81,14 @@ def report_of(
     near = tuple(p for p in published if abs(p.pressure_MPa - values.pressure_MPa) <= SAME_PRESSURE_MPa)
     paper = {p.design for p in near if p.measured_angle_deg is not None}
     common = any(design.shell in paper for design in values.designs)
+    for name in LIBRARIES:
+        import_module(name)
     return StudyReport(
         values,
         tuple(_compared(values, chosen, confidence, difference_deg) for chosen in values.sets),
         near,
         _published_sets(near, confidence) if common else (),
-        made_by("numpy", "scipy", "matplotlib", "jinja2"),
+        made_by(*LIBRARIES),
         confidence,
     )
 

@@ -27,8 +27,8 @@ def draw_consistency(cells: Sequence[Cell], statistic: str) -> Figure:
 
 
 def plot_consistency(ax: Axes, cells: Sequence[Cell], statistic: str) -> None:
-    """A line from 0 to each value; dashed: critical values, which depend on how many cycles and samples there are."""
-    levels = [(level, list(group)) for level, group in groupby(cells, key=lambda cell: cell.level)]
+    """A line from 0 to each value; dashed: critical values, which depend on how many replicates there are."""
+    levels = [(level, list(group)) for level, group in groupby(cells, key=lambda cell: cell.level or cell.laboratory)]
     names = cut_apart([drawable(level, 200) for level, _ in levels], max(50 // max(len(levels), 1), 5))
     left, middles, top = 0.0, [], 1.0
     for _, group in levels:
@@ -53,6 +53,11 @@ def plot_consistency(ax: Axes, cells: Sequence[Cell], statistic: str) -> None:
     ax.set_xticks(middles, names, **TEXT)
     ax.set_xlim(-1.2, left - 0.8)
     ax.set_ylim(-1.18 * top if statistic == "h" else 0, 1.18 * top)
-    dress(ax, None, f"{statistic} of each sample")
+    dress(ax, None, f"{statistic} of each {what_of(cells)}")
     ax.grid(False, axis="x")
     ax.tick_params(axis="x", length=0, labelsize=8.5 if len(levels) < 6 else 7.5, labelcolor="black")
+
+
+def what_of(cells: Sequence[Cell]) -> str:
+    """What stands apart or not: samples by their cycles or, where there are none, designs by their samples."""
+    return "sample" if any(cell.level for cell in cells) else "design"

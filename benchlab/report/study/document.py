@@ -102,7 +102,7 @@ def _provenance(report: StudyReport) -> Section:
     command = shlex.join([Path(made["argv"][0]).name, *made["argv"][1:]])
     rows = [("Command", command), ("Made", made["created"]), ("Versions", versions)]
     if "study" in made:
-        rows.insert(0, ("Study file", f"{made['study']['file']}, SHA-256 {made['study']['sha256']}"))
+        rows.insert(0, ("Study file", made["study"]))
     if made.get("git"):
         rows.append(("Source", f"commit {made['git']}"))
     inputs = tuple((words(name, 80), Cell(digest, f"{digest[:16]}…")) for name, digest in report.values.inputs.items())

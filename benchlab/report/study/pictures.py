@@ -10,7 +10,7 @@ import numpy as np
 from benchlab.io.study_values import DesignValues
 from benchlab.report.document import Block, Pictures, Words, cut
 from benchlab.report.study.bars_figure import MOST_BRACKETED, Bar, draw_bars
-from benchlab.report.study.consistency_figure import MOST_CELLS, draw_consistency
+from benchlab.report.study.consistency_figure import MOST_CELLS, draw_consistency, what_of
 from benchlab.report.study.figures import (
     HALF_IN,
     MOST_ROWS,
@@ -28,6 +28,12 @@ from benchlab.stats.pairs import Pair
 from benchlab.stats.wording import STARS_LEGEND, p_equals, stars
 
 MOST_BANDS = 24
+
+_STATISTICS = {
+    "sample": "h: a sample’s mean from that of its design, over the standard deviation of the samples. k: the scatter of a sample’s "
+    "cycles over the pooled one.",
+    "design": "k: the scatter of a design’s samples over the pooled one.",
+}
 
 
 def bars_blocks(report: StudyReport) -> Iterator[Block]:
@@ -149,16 +155,16 @@ def consistency_blocks(report: StudyReport) -> Iterator[Block]:
     cells = () if found is None else found.repeatability.cells
     if not cells or len(cells) > MOST_CELLS:
         return
+    what = what_of(cells)
     panels = [
-        panel_of(draw_consistency(cells, statistic), f"consistency_{statistic}", f"{statistic} of each sample")
+        panel_of(draw_consistency(cells, statistic), f"consistency_{statistic}", f"{statistic} of each {what}")
         for statistic in ("h", "k")
         if any(getattr(cell, statistic) is not None for cell in cells)
     ]
     if panels:
         yield Pictures(
             tuple(panels),
-            "Mandel’s consistency statistics (ASTM E691). h: a sample’s mean from that of its design, over the standard deviation of the "
-            "samples. k: the scatter of a sample’s cycles over the pooled one. Dashed: critical values at 0.5 %; what is beyond is named.",
+            f"Mandel’s consistency statistics (ASTM E691). {_STATISTICS[what]} Dashed: critical values at 0.5 %; what is beyond is named.",
         )
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from benchlab.report.document import Block, Cell, Column, Table, Words, cut
 from benchlab.report.rounding import count, number, words
+from benchlab.report.study.consistency_figure import what_of
 from benchlab.report.study.report import StudyReport, found_sets, joined, span_text
 from benchlab.stats.comparison import Comparison
 from benchlab.stats.components import Component
@@ -99,12 +100,12 @@ def consistency_words(found: Comparison) -> Words:
                 )
     if beyond:
         return Words(
-            f"Beyond a critical value of h or k: {joined(beyond, 8)}. Look at these samples; nothing was left out for it.",
+            f"Beyond a critical value of h or k: {joined(beyond, 8)}. Look at them; nothing was left out for it.",
             "warning",
         )
     tested = any(value is not None for cell in cells for value in (cell.h, cell.k))
     return Words(
-        "No sample is beyond a critical value of h or k."
+        f"No {what_of(cells)} is beyond a critical value of h or k."
         if tested
         else "h and k are not defined here: too few replicates."
     )

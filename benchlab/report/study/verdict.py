@@ -53,13 +53,11 @@ def _tiles(report: StudyReport) -> Iterator[Tile]:
         yield Tile(
             f"{told} of {len(tested)}", "pairs of designs told apart", f"Tukey HSD at {found.alpha:.3g}, all designs"
         )
-    forces = [design for design in report.values.designs if design.force is not None]
+    forces = [(force, one.name) for one in report.values.designs if isinstance(force := one.force, BlockedForce)]
     if len(forces) == 1:
-        force = forces[0].force
-        value, pressure = _force(force), f"at {force.pressure_MPa[-1]:g} MPa"
-        yield Tile(
-            value, f"blocked force {pressure}", f"{cut(forces[0].name, 24)}, mean ± SD of {force.n[-1]} actuators"
-        )
+        force, name = forces[0]
+        note = f"{cut(name, 24)}, mean ± SD of {force.n[-1]} actuators"
+        yield Tile(_force(force), f"blocked force at {force.pressure_MPa[-1]:g} MPa", note)
     errors = _errors(report)
     if len(errors) > 1:
         yield Tile(f"{number(_rms(errors), places).text}°", "error of the simulation, RMS", _span(errors, places))
