@@ -71,8 +71,10 @@ def find_baseline(force_N: FloatArray, time_s: FloatArray | None, loadings: Sequ
     place, level, sd, flat = (np.array([getattr(r, name) for r in rests]) for name in ("place", "level", "sd", "flat"))
     about = np.concatenate([rest.about for rest in rests if rest.flat] or [np.full(1, noise)])
     slope = math.nan
-    if time_s is not None and len(place) > 1:
-        slope = float(np.polyfit(np.interp(place, np.arange(len(time_s)), time_s), level, 1)[0])
+    if time_s is not None:
+        at = np.interp(place, np.arange(len(time_s)), time_s)
+        known = np.isfinite(at)
+        slope = float(np.polyfit(at[known], level[known], 1)[0]) if len(set(at[known].tolist())) > 1 else math.nan
     return Baseline(place, level, sd, flat, float(MAD_TO_SD * np.median(np.abs(about))), slope)
 
 

@@ -101,7 +101,7 @@ def stated_steps(count: int, steps: int, cycles: int | None, found: str) -> NDAr
             f"{steps} steps of {cycles} cycles are {steps * cycles}" if cycles else f"{steps} steps do not divide them"
         )
         raise InputError(
-            f"{count} whole cycles found, and {each}: {found}",
+            f"{count} whole cycle{'s' * (count != 1)} found, and {each}: {found}",
             hint="look at the trace; then correct --steps-MPa or --cycles, or give the pressure with --pressure",
         )
     return np.repeat(np.arange(steps), cycles)

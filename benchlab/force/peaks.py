@@ -103,11 +103,12 @@ def peaks_of(
 
 
 def loadings_of_cycles(cycle: FloatArray, force_N: FloatArray) -> tuple[Loading, ...]:
-    """The loadings that a column of cycle numbers (n,) tells: a stretch of equal numbers is one. force_N: (n,)."""
+    """The loadings that a column of cycle numbers (n,) tells: a stretch of equal numbers is one. force_N: (n,). None where it does
+    not count."""
     known = np.isfinite(force_N) & np.isfinite(cycle)
     edges = [0, *(np.flatnonzero(np.diff(cycle) != 0) + 1).tolist(), len(cycle)]
     found = []
-    for start, stop in pairwise(edges):
+    for start, stop in pairwise(edges) if len(edges) > 2 else ():
         rows = np.flatnonzero(known[start:stop]) + start
         if len(rows) > 2 and np.ptp(force_N[rows]) > 0:
             first, last = half_height(force_N[rows], float(force_N[rows].min()))

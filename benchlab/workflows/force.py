@@ -52,7 +52,6 @@ def force(
     settings.check()
     _refuse_same_names(inputs)
     folder = out or inputs[0].path.parent
-    _check_outputs(inputs, folder, overwrite)
     read, failed = [], []
     for one in inputs:
         try:
@@ -63,7 +62,15 @@ def force(
         raise failed[0]
     _refuse_copies(read)
     blocked, reasons = combined([found for item in read for found in item.found], settings)
-    return _written(read, failed, blocked, reasons, folder)
+    planned = [_outputs_of(item, folder) for item in read]
+    final = [folder / name for name in FINAL] if blocked is not None else []
+    _check_outputs([path for paths in planned for path in paths] + final, inputs, folder, overwrite)
+    files = [_write_file(item, paths) for item, paths in zip(read, planned)]
+    result: dict[str, Any] = {"files": files, "blocked_force": None, "failed": [e.as_json()["error"] for e in failed]}
+    if blocked is not None:
+        origins = list(dict.fromkeys(filter(None, (origin_of(item.export) for item in read))))
+        result["blocked_force"] = _write_blocked(folder, blocked, reasons, origins)
+    return {**result, "outputs": [path for one in files for path in one["outputs"]] + [str(path) for path in final]}
 
 
 def read_force(one: ForceInput, settings: ForceSettings) -> ForceRead:
@@ -108,38 +115,31 @@ def origin_of(export: MachineExport) -> str:
     return next((text for text in texts if "not measured" in text.lower()), "")
 
 
-def _written(
-    read: list[ForceRead], failed: list[BenchlabError], blocked: BlockedForce | None, reasons: list[str], folder: Path
-) -> dict[str, Any]:
-    outputs: list[Path] = []
-    files = [_file_document(item) for item in read]
-    for item, document in zip(read, files):
-        table, store = (folder / f"{item.export.path.stem}_force{suffix}" for suffix in (".csv", ".h5"))
-        write_force_csv(table, item.export)
-        provenance = {
-            **made_by("numpy", "scipy", "pandas", "h5py"),
-            "source": str(item.export.path),
-            "sha256": item.sha256,
-        }
-        write_force_file(store, item.export, provenance)
-        outputs += [table, store]
-        if any(found.cycles is not None for found in item.found):
-            outputs.append(folder / f"{item.export.path.stem}_peaks.csv")
-            write_peaks_csv(outputs[-1], item.found)
-        document["outputs"] = [str(path) for path in outputs if path.stem.startswith(item.export.path.stem)]
-    result: dict[str, Any] = {"files": files, "blocked_force": None, "failed": [e.as_json()["error"] for e in failed]}
-    if blocked is not None:
-        origins = list(dict.fromkeys(filter(None, (origin_of(item.export) for item in read))))
-        document = blocked_force_json(blocked)
-        document["warnings"] += reasons
-        document["origin"] = origins
-        document["words"] = line_words(blocked)
-        result["blocked_force"] = document
-        write_blocked_csv(folder / "blocked_force.csv", blocked)
-        figures = draw_figures(folder, blocked, bool(origins))
-        _write_json(folder / "blocked_force.json", {**document, **made_by("numpy", "scipy", "matplotlib")})
-        outputs += [folder / "blocked_force.csv", folder / "blocked_force.json", *figures]
-    return {**result, "outputs": [str(path) for path in outputs]}
+def _outputs_of(item: ForceRead, folder: Path) -> list[Path]:
+    """What is written of one file."""
+    ends = ["_force.csv", "_force.h5"] + ["_peaks.csv"] * any(found.cycles is not None for found in item.found)
+    return [folder / f"{item.export.path.stem}{end}" for end in ends]
+
+
+def _write_file(item: ForceRead, paths: list[Path]) -> dict[str, Any]:
+    """Write the table of one file and its peaks; returns its part of the document."""
+    made = made_by("numpy", "scipy", "pandas", "h5py")
+    write_force_csv(paths[0], item.export)
+    write_force_file(paths[1], item.export, {**made, "source": str(item.export.path), "sha256": item.sha256})
+    for path in paths[2:]:
+        write_peaks_csv(path, item.found)
+    return {**_file_document(item), "outputs": [str(path) for path in paths]}
+
+
+def _write_blocked(folder: Path, blocked: BlockedForce, reasons: list[str], origins: list[str]) -> dict[str, Any]:
+    """Write blocked force as table, numbers and figure; returns its part of the document."""
+    document = blocked_force_json(blocked)
+    document["warnings"] += reasons
+    document |= {"origin": origins, "words": line_words(blocked)}
+    write_blocked_csv(folder / "blocked_force.csv", blocked)
+    _write_json(folder / "blocked_force.json", {**document, **made_by("numpy", "scipy", "matplotlib")})
+    draw_figures(folder, blocked, bool(origins))
+    return document
 
 
 def _file_document(item: ForceRead) -> dict[str, Any]:
@@ -188,15 +188,14 @@ def _refuse_copies(read: Sequence[ForceRead]) -> None:
         seen[item.sha256] = item.export.path
 
 
-def _check_outputs(inputs: Sequence[ForceInput], folder: Path, overwrite: bool) -> None:
+def _check_outputs(paths: Sequence[Path], inputs: Sequence[ForceInput], folder: Path, overwrite: bool) -> None:
     read = {path.resolve() for one in inputs for path in (one.path, one.pressure) if path is not None}
     if not folder.exists() and folder.absolute().parent.is_dir():
         folder.mkdir()
-    names = [f"{one.path.stem}{end}" for one in inputs for end in ("_force.csv", "_force.h5", "_peaks.csv")]
-    for name in (*names, *FINAL):
-        if (folder / name).resolve() in read:
-            raise UsageError("is read here and would be replaced", file=folder / name, hint="choose another --out")
-        check_new_file(folder / name, overwrite)
+    for path in paths:
+        if path.resolve() in read:
+            raise UsageError("is read here and would be replaced", file=path, hint="choose another --out")
+        check_new_file(path, overwrite)
 
 
 def _write_json(path: Path, document: dict[str, Any]) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 from benchlab.errors import InputError, UsageError
 from benchlab.force.curve import ActuatorCycles
 from benchlab.force.levels import TOLERANCE, level_of, nearest_steps, stated_steps
-from benchlab.force.loading import find_loadings
+from benchlab.force.loading import Loading, find_loadings
 from benchlab.force.peaks import ForcePeak, ForceRecord, loadings_of_cycles, peaks_of, pushes_down
 from benchlab.io.export_tests import MachineTest
 from benchlab.io.machine_export import ExportOptions
@@ -51,7 +51,7 @@ class ForceSettings:
             raise UsageError(
                 "steps of pressure do not grow from above 0 MPa", hint="give them as 0.035:0.35:0.035, or 0.1,0.2"
             )
-        if self.cycles is not None and not self.steps_MPa and self.pressure is None:
+        if self.cycles is not None and not self.steps_MPa:
             raise UsageError("cycles of steps that are not told", hint="give the pressures too, with --steps-MPa")
         for value, option in ((self.tolerance_MPa, "--tolerance-MPa"), (self.lever_arm_mm, "--lever-arm-mm")):
             if value is not None and not value > 0:
@@ -81,51 +81,70 @@ def find_cycles(
     force = test.columns["force_N"] * (-1.0 if settings.negate else 1.0)
     time = test.columns.get("time_s")
     warnings: list[str] = []
-    pressure, source = _pressure(test, time, log)
-    loadings = None if pressure is None else find_loadings(pressure)
-    if loadings is not None and not loadings:
-        if log is not None:
-            raise InputError("the pressure shows no cycle", hint="is it the log of this record, on the same clock?")
-        warnings.append("the pressure does not rise and fall: no cycles from it")
-        pressure, loadings, source = None, None, ""
-    if source == "" and "cycle" in test.columns:
-        source, loadings = "the file's column of cycles", loadings_of_cycles(test.columns["cycle"], force)
-    inferred = {"cycles": source or "rises and falls of the force"}
+    pressure, loadings, source = _loadings(test, force, log, warnings)
     if pushes_down(force):
-        low = float(np.nanmin(force))
-        if settings.wanted or pressure is not None:
-            raise UsageError(f"the force goes down in its cycles, to {low:.4g} N", hint=NEGATE)
-        high = float(np.nanmax(force))
-        record = ForceRecord((), (), None, low, high, None, (f"the force goes down, to {low:.4g} N: {NEGATE}",))
+        record = _downwards(force, refused=settings.wanted or pressure is not None)
     else:
         record = peaks_of(force, time, loadings or None)
     levels, how = _levels(record, pressure, settings, warnings)
-    inferred |= how
     warnings += _doubts(record)
     if how:
         warnings += _doubts_of_cycles(record, pressure)
-    kept = np.flatnonzero(np.isfinite(levels))
-    cycles = None
+    cycles = _counted(actuator, record, levels)
     if settings.steps_MPa and not record.contact and pressure is None:
-        steps = np.repeat(settings.steps_MPa, settings.cycles or 1)
-        cycles = ActuatorCycles(actuator, np.zeros(len(steps)), steps, np.zeros(len(steps), dtype=bool))
-    elif len(kept):
-        peaks = [record.peaks[i] for i in kept]
-        force_N = np.array([peak.peak_N for peak in peaks])
-        cycles = ActuatorCycles(actuator, force_N, levels[kept], np.array([peak.lower_bound for peak in peaks]))
-    return FoundCycles(actuator, record, levels, cycles, inferred, tuple(warnings))
+        cycles = _untouched(actuator, settings)
+    return FoundCycles(actuator, record, levels, cycles, {"cycles": source, **how}, tuple(warnings))
 
 
-def _pressure(test: MachineTest, time: FloatArray | None, log: PressureRecord | None) -> tuple[FloatArray | None, str]:
-    """(n,) pressure of each reading and where it is from."""
+def _loadings(
+    test: MachineTest, force: FloatArray, log: PressureRecord | None, warnings: list[str]
+) -> tuple[FloatArray | None, tuple[Loading, ...], str]:
+    """(n,) pressure where it has cycles, the loadings where something but the force tells them, and what does."""
+    pressure, source = _pressure(test, log)
+    if pressure is not None and (found := find_loadings(pressure)):
+        return pressure, found, source
     if log is not None:
-        if time is None:
-            raise UsageError(
-                "no time in the file, and a log of pressure goes by time", hint="give --steps-MPa and --cycles instead"
-            )
-        return log.at(time), f"the pressure in {log.source}"
-    column = test.columns.get("pressure_MPa")
-    return column, "" if column is None else "the file's column of pressure"
+        raise InputError("the pressure shows no cycle", hint="is it the log of this record, on the same clock?")
+    if pressure is not None:
+        warnings.append("the pressure does not rise and fall: no cycles from it")
+    if "cycle" in test.columns and (found := loadings_of_cycles(test.columns["cycle"], force)):
+        return None, found, "the file's column of cycles"
+    return None, (), "rises and falls of the force"
+
+
+def _pressure(test: MachineTest, log: PressureRecord | None) -> tuple[FloatArray | None, str]:
+    """(n,) pressure of each reading and where it is from."""
+    if log is None:
+        return test.columns.get("pressure_MPa"), "the file's column of pressure"
+    if "time_s" not in test.columns:
+        what = "no time in the file, and a log of pressure goes by time"
+        raise UsageError(what, hint="give --steps-MPa and --cycles instead")
+    return log.at(test.columns["time_s"]), f"the pressure in {log.source}"
+
+
+def _downwards(force: FloatArray, refused: bool) -> ForceRecord:
+    """A record of cycles that go down: without peaks, or refused where they are wanted."""
+    low = float(np.nanmin(force))
+    if refused:
+        raise UsageError(f"the force goes down in its cycles, to {low:.4g} N", hint=NEGATE)
+    note = f"the force goes down, to {low:.4g} N: {NEGATE}"
+    return ForceRecord((), (), None, low, float(np.nanmax(force)), None, (note,))
+
+
+def _counted(actuator: str, record: ForceRecord, levels: FloatArray) -> ActuatorCycles | None:
+    """The peaks with a pressure."""
+    kept = np.flatnonzero(np.isfinite(levels))
+    if not len(kept):
+        return None
+    peaks = [record.peaks[i] for i in kept]
+    force_N = np.array([peak.peak_N for peak in peaks])
+    return ActuatorCycles(actuator, force_N, levels[kept], np.array([peak.lower_bound for peak in peaks]))
+
+
+def _untouched(actuator: str, settings: ForceSettings) -> ActuatorCycles:
+    """Of a load cell that was never touched: no force at any of the stated steps."""
+    steps = np.repeat(settings.steps_MPa, settings.cycles or 1)
+    return ActuatorCycles(actuator, np.zeros(len(steps)), steps, np.zeros(len(steps), dtype=bool))
 
 
 def _levels(

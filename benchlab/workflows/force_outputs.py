@@ -49,7 +49,7 @@ def write_blocked_csv(path: Path, found: BlockedForce) -> None:
     _write(path, columns, rows)
 
 
-def draw_figures(folder: Path, found: BlockedForce, drawn: bool) -> list[Path]:
+def draw_figures(folder: Path, found: BlockedForce, drawn: bool) -> None:
     """The figure, in the manner of the paper's Fig. 3b; drawn: its title says that nothing was measured."""
     figure = draw_force_figure(found, drawn)
     png, svg = folder / "blocked_force.png", folder / "blocked_force.svg"
@@ -60,7 +60,6 @@ def draw_figures(folder: Path, found: BlockedForce, drawn: bool) -> list[Path]:
             save_png(figure, temporary)
         except OSError as error:
             raise cannot_write(error, png) from error
-    return [png, svg]
 
 
 def _cell(value: float) -> str:
