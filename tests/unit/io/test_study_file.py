@@ -1,11 +1,14 @@
 """What a study file comes to: paths, settings of each recording, shells, sets."""
 
+import re
 from pathlib import Path
 
 import pytest
+from pydantic import BaseModel
 
 from benchlab.actuator import ShellDesign
 from benchlab.io.study_file import Study, read_study
+from benchlab.io.study_schema import StudyDocument
 from benchlab.io.study_values import StudySet
 from tests.unit.io.studies import GOOD, write_study
 
@@ -113,3 +116,28 @@ def test_a_shell_may_be_a_design_file(tmp_path: Path) -> None:
     (tmp_path / "mine.yaml").write_text("strip_width_mm: 7\nwindow_width_mm: 4\n")
     text = GOOD.replace("shell: tw3_slw10", "shell: mine.yaml")
     assert read_study(write_study(tmp_path, text)).designs[1].shell == ShellDesign(7, 4)
+
+
+def keys_of(model: type[BaseModel]) -> set[str]:
+    schema = model.model_json_schema()
+    return {name for part in (schema, *schema["$defs"].values()) for name in part.get("properties", {})}
+
+
+def test_the_guide_explains_every_key_and_its_example_is_read(tmp_path: Path) -> None:
+    guide = (Path(__file__).resolve().parents[3] / "docs" / "studies.md").read_text(encoding="utf-8")
+    explained = set(re.findall(r"`([a-zA-Z_]+):?`", guide.partition("### The study")[2]))
+    assert keys_of(StudyDocument) <= explained, keys_of(StudyDocument) - explained
+    (example,) = re.findall(r"```yaml\n(.*?)```", guide, re.DOTALL)
+    study = read_study(write_study(tmp_path, example))
+    glued, welded = study.designs
+    assert [len(sample.recordings) for sample in glued.samples] == [1, 2, 2, 1]
+    assert glued.samples[2].recordings[0].analysis == {
+        "pressure": str(tmp_path / "logs/bench.csv"), "sync": "onset", "marker_span_mm": 180, "length_mm": 180,
+        "markers": 9, "roi_px": [100, 50, 1200, 800],
+    }  # fmt: skip
+    assert welded.shell == ShellDesign(10, 3) and welded.simulated is not None and welded.simulated.angle_deg == 130.2
+    assert [r.kind for s in welded.samples for r in s.recordings] == ["run", "table", "table"]
+    assert [(f.actuator, f.settings.get("columns")) for f in glued.force] == [
+        ("tw3_slw5_a1", None), ("second", "time_s,extension_mm,force_N"),
+    ]  # fmt: skip
+    assert study.sets[0].x == "slw_mm" and len(study.sets) == 1
