@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 
 from benchlab.vision.synthetic import Scene
-from benchlab.workflows import sample_data
+from benchlab.workflows import sample_data, sample_study
 
 ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-GUIDES = "\n".join((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8") for name in ("see", "measure", "predict", "compare"))
+GUIDES = "\n".join((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8") for name in ("see", "measure", "predict", "compare", "studies"))
 SHELL = "\n".join(re.findall(r"```sh\n(.*?)```", README + GUIDES, re.DOTALL))
 COMMANDS = sorted(set(re.findall(r"benchlab [a-z][^&\n]*", SHELL)))
-REFUSE_TO_REPLACE = ("calibrate", "cut", "design", "export", "fit-material", "force", "stats")
+REFUSE_TO_REPLACE = ("calibrate", "cut", "design", "export", "fit-material", "force", "stats", "study new")
 
 
 @pytest.fixture(scope="module")
@@ -70,15 +70,17 @@ def test_command_of_readme(command: str, clone: Path, benchlab, monkeypatch: pyt
         monkeypatch.setattr(
             sample_data, "_scene", lambda *_: Scene(width=320, height=180, length_px=200.0, base_px=(40.0, 40.0))
         )
+        monkeypatch.setattr(sample_study, "PRESSURES_MPA", (0.0, 0.1))
         command = command.replace("--out sample_data", "--out drawn")
     (clone / "results").mkdir(exist_ok=True)
     if "--lens" in command and not (clone / "results" / "lens.json").exists():
         (first,) = [c for c in COMMANDS if c.startswith("benchlab calibrate")]
         assert benchlab(*shlex.split(first)[1:]).code == 0
     words = shlex.split(command)[1:]
-    done = benchlab(*words, *(["--overwrite"] if words[0] in REFUSE_TO_REPLACE else []))
+    refuses = words[0] in REFUSE_TO_REPLACE or " ".join(words[:2]) in REFUSE_TO_REPLACE
+    done = benchlab(*words, *(["--overwrite"] if refuses else []))
     assert done.code == 0, done.err
-    assert "wrote" in done.err or "current" in done.err
+    assert any(word in done.err for word in ("wrote", "current", "complete", "F("))
 
 
 def test_the_python_of_the_guide_runs(clone: Path, benchlab, monkeypatch: pytest.MonkeyPatch) -> None:
