@@ -7,10 +7,10 @@ float, as float() does.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from io import BytesIO
 from typing import Any
 
 import numpy as np
@@ -27,7 +27,7 @@ MIN_BYTES = 16 * HEAD
 
 _CHUNK = 1 << 20
 _SAMPLE = 200
-"""Bytes that a thread reads at a time; rows by which the decimal sign is found."""
+"""Bytes that are proven at a time; rows by which the decimal sign is found."""
 
 _NEWLINE, _RETURN, _QUOTE, _NINE, _ZERO = b'\n\r"90'
 _EXPONENTS = b"eE"
@@ -66,7 +66,7 @@ def read_plain(text: ExportText, stated: str | None = None) -> PlainTable | None
         first, cells = rows[span.first]
         signs = _signs(text, rows[span.first : span.last][:_SAMPLE], stated)
         start, end, is_last_cut = _body(text, first)
-        columns = _columns(data, start, end, text.separator, signs.decimal, cells)
+        columns = _columns(text, start, end, first - 1, signs.decimal, cells)
     except (NotPlainError, InputError):
         return None
     lines = range(first, first + len(columns[0].values))
@@ -101,34 +101,59 @@ def _body(text: ExportText, line: int) -> tuple[int, int, bool]:
     return start, data.find(b"\n", end) + 1 or len(data), cut
 
 
-def _columns(data: bytes, start: int, end: int, separator: str, decimal: str, first: list[str]) -> tuple[Column, ...]:
-    """All columns between two places. Raises NotPlainError for the first doubt."""
-    width, all_marked = len(first), all(decimal in cell for cell in first)
-    quoted = data.startswith(b'"', start)
-    if not quoted and data.find(b'"', start, end) >= 0:
-        raise NotPlainError
-    proof = _Proof(separator, decimal, width, all_marked, quoted, data.find(b"\r", start, end) >= 0)
-    chunks = list(_chunks(data, start, end))
-    codes = np.frombuffer(data, np.uint8)
+def _columns(text: ExportText, start: int, end: int, header: int, decimal: str, first: list[str]) -> tuple[Column, ...]:
+    """All columns between two places, which come after `header` lines. Raises NotPlainError for the first doubt."""
+    all_marked = all(decimal in cell for cell in first)
 
-    with ThreadPoolExecutor(max(1, min(4, os.cpu_count() or 1))) as pool:
-        counts = list(pool.map(lambda place: np.count_nonzero(codes[slice(*place)] == _NEWLINE), chunks))
-        counts[-1] += codes[end - 1] != _NEWLINE
-        if (rows := sum(counts)) > MAX_ROWS:
+    def proven() -> list[_Part]:
+        data, quoted = text.data, text.data.startswith(b'"', start)
+        if not quoted and data.find(b'"', start, end) >= 0:
             raise NotPlainError
-        values = np.empty((width, rows))
-        decimals = None if all_marked else np.empty((width, rows), np.int16)
+        returns = data.find(b"\r", start, end) >= 0
+        proof = _Proof(text.separator, decimal, len(first), all_marked, quoted, returns)
+        return [proof.check(_whole_lines(data, *place)) for place in _places(data, start, end)]
 
-        def read(place: tuple[int, int], first: int, last: int) -> None:
-            part = None if decimals is None else decimals[:, first:last]
-            proof.read(_whole_lines(data, *place), values[:, first:last], part)
+    # The proof is made beside the reading: NumPy lets other threads run, and so does pandas.
+    with ThreadPoolExecutor(1) as pool:
+        proof = pool.submit(proven)
+        values = _parsed(text, start, end, header, decimal)
+        parts = proof.result()
+    if values.shape != (sum(part.rows for part in parts), len(first)) or len(values) > MAX_ROWS:
+        raise NotPlainError
+    if any(part.exponents for part in parts) and not np.isfinite(values).all():
+        raise NotPlainError
+    if all_marked:
+        return tuple(Column(column, None) for column in values.T)
+    decimals = np.concatenate([part.decimals for part in parts if part.decimals is not None])
+    return tuple(Column(column, counts) for column, counts in zip(values.T, decimals.T))
 
-        after = np.cumsum(counts)
-        list(pool.map(read, chunks, after - counts, after))
-    return tuple(Column(v, decimals if decimals is None else decimals[i]) for i, v in enumerate(values))
+
+def _parsed(text: ExportText, start: int, end: int, header: int, decimal: str) -> FloatArray:
+    """(n, width) numbers. From the file itself where its bytes are those that were proven: there pandas reads in threads."""
+    import pandas
+
+    exact: dict[str, Any] = {}
+    if int(pandas.__version__.split(".")[0]) < 3:
+        exact = {"float_precision": "round_trip"}
+    as_stored = text.content.encoding in ("ascii", "utf-8") and end == len(text.data)
+    source = {"filepath_or_buffer": text.path, "skiprows": header} if as_stored else {}
+    try:
+        frame = pandas.read_csv(
+            **(source or {"filepath_or_buffer": BytesIO(text.data[start:end])}),
+            sep=r"\s+" if text.separator == " " else text.separator,
+            decimal=decimal,
+            header=None,
+            dtype=np.float64,
+            na_filter=False,
+            compression=None,
+            **exact,
+        )
+    except (ValueError, OverflowError, OSError) as error:
+        raise NotPlainError from error
+    return np.asarray(frame.to_numpy())
 
 
-def _chunks(data: bytes, start: int, end: int) -> Iterator[tuple[int, int]]:
+def _places(data: bytes, start: int, end: int) -> Iterator[tuple[int, int]]:
     """Places of whole lines, together about as long as _CHUNK."""
     while start < end:
         after = data.find(b"\n", start + _CHUNK, end) + 1 or end
@@ -145,18 +170,13 @@ def _whole_lines(data: bytes, start: int, end: int) -> memoryview:
     return memoryview(bytes(part).rstrip(b"\r") + line_end)
 
 
-class _Bytes:
-    """A file that pandas reads from memory, in small parts."""
+@dataclass(frozen=True)
+class _Part:
+    """What is proven of some lines. decimals: (rows, width) of each cell, None where all numbers have a decimal sign."""
 
-    def __init__(self, data: memoryview) -> None:
-        self.data, self.at = data, 0
-
-    def read(self, count: int = -1) -> bytes:
-        start, self.at = self.at, len(self.data) if count < 0 else self.at + count
-        return bytes(self.data[start : self.at])
-
-    def __iter__(self) -> Iterator[bytes]:
-        return iter(self.read, b"")
+    rows: int
+    exponents: bool
+    decimals: NDArray[np.int16] | None
 
 
 @dataclass(frozen=True)
@@ -170,19 +190,18 @@ class _Proof:
     quoted: bool
     returns: bool
 
-    def read(self, chunk: memoryview, values: FloatArray, decimals: NDArray[np.int16] | None) -> None:
-        """Fill values (width, n) from n whole lines, and the decimals of each, where not all numbers have a decimal sign."""
-        codes = np.frombuffer(chunk, np.uint8)
+    def check(self, lines: memoryview) -> _Part:
+        """Raises NotPlainError where whole lines are not of plain numbers."""
+        codes = np.frombuffer(lines, np.uint8)
         ends = np.flatnonzero(codes == _NEWLINE)
-        self._check_characters(codes, ends)
-        if decimals is not None:
-            decimals[:] = self._decimals(codes).T
-        elif np.count_nonzero(codes == ord(self.decimal)) != len(ends) * self.width:
+        self._check_lines(codes, ends)
+        exponents = self._exponents(codes)
+        if self.all_marked and np.count_nonzero(codes == ord(self.decimal)) != len(ends) * self.width:
             raise NotPlainError
-        self._parse(chunk, values)
+        return _Part(len(ends), exponents, None if self.all_marked else self._decimals(codes))
 
-    def _check_characters(self, codes: Bytes, ends: NDArray[np.intp]) -> None:
-        """Lines short enough, ends of lines alike, cells all quoted or all bare, no letters but of exponents."""
+    def _check_lines(self, codes: Bytes, ends: NDArray[np.intp]) -> None:
+        """Lines short enough, ends of lines alike, cells all quoted."""
         longest = int(max(ends[0] + 1, np.diff(ends).max(initial=0)))
         least = self.width * (3 if self.quoted else 1) + self.width
         if longest - least > MAX_NUMBER:
@@ -193,11 +212,17 @@ class _Proof:
             raise NotPlainError
         if self.quoted:
             self._check_quotes(codes, codes == _QUOTE, ends - 1 - self.returns)
+
+    def _exponents(self, codes: Bytes) -> bool:
+        """Whether there are letters, all of them of exponents."""
+        if codes.max() <= _NINE:
+            return False
         letters = np.count_nonzero(codes > _NINE)
         if ord(self.separator) > _NINE:
             letters -= np.count_nonzero(codes == ord(self.separator))
         if letters and not (self.all_marked and letters == sum(np.count_nonzero(codes == code) for code in _EXPONENTS)):
             raise NotPlainError
+        return bool(letters)
 
     def _check_quotes(self, codes: Bytes, quotes: NDArray[np.bool_], ends: NDArray[np.intp]) -> None:
         """Two quotation marks a cell, beside the separators and the ends of lines."""
@@ -227,29 +252,3 @@ class _Proof:
         ).any():
             raise NotPlainError
         return decimals.reshape(-1, self.width)
-
-    def _parse(self, chunk: memoryview, values: FloatArray) -> None:
-        import pandas
-
-        exact: dict[str, Any] = {}
-        if int(pandas.__version__.split(".")[0]) < 3:
-            exact = {"float_precision": "round_trip"}
-        try:
-            frame = pandas.read_csv(
-                _Bytes(chunk),
-                sep=r"\s+" if self.separator == " " else self.separator,
-                decimal=self.decimal,
-                header=None,
-                dtype=np.float64,
-                na_filter=False,
-                low_memory=False,
-                **exact,
-            )
-        except (ValueError, OverflowError) as error:
-            raise NotPlainError from error
-        if frame.shape != values.shape[::-1]:
-            raise NotPlainError
-        for row, name in zip(values, frame.columns):
-            row[:] = frame[name].to_numpy()
-        if not np.isfinite(values).all():
-            raise NotPlainError

@@ -46,7 +46,7 @@ class Signs:
 
 @dataclass(frozen=True)
 class Column:
-    """Numbers of a column (n,), NaN where there is none; decimals (n,) that each was written with, None where all have as many;
+    """Numbers of a column (n,), read-only, NaN where there is none; decimals (n,) that each was written with, None where all have as many;
     unreadable: (row, cell) of what is neither empty nor a number."""
 
     values: FloatArray
@@ -131,6 +131,7 @@ def numbers(path: Path, label: str, cells: Sequence[str], lines: Lines, signs: S
             unreadable.append((row, cell))
             read = np.nan, NO_NUMBER
         values[row], decimals[row] = read
+    values.setflags(write=False)
     return Column(values, decimals, tuple(unreadable))
 
 

@@ -86,9 +86,9 @@ def _values(table: ExportTable, columns: Sequence[Chosen], warnings: list[str]) 
 
 def _check_cells(table: ExportTable, chosen: Chosen, column: Column, warnings: list[str]) -> None:
     """Counts cells without a number. Raises InputError for more of them than MAX_UNREADABLE."""
-    missing = np.flatnonzero(np.isnan(column.values))
-    if not missing.size:
+    if not np.isnan(column.values).any():
         return
+    missing = np.flatnonzero(np.isnan(column.values))
     cells = dict(column.unreadable)
     first = column.unreadable[0][0] if cells else int(missing[0])
     shown = f"the first {printable(cells[first])!r}" if cells else "all empty"

@@ -23,6 +23,9 @@ SEPARATORS = {"\t": "tab", ";": "semicolon", "|": "bar", ",": "comma", " ": "bla
 HEAD, TAIL = 1 << 14, 1 << 13
 """Bytes at the beginning and the end of a file by which its separator is found."""
 
+_SAMPLE = 150
+"""Lines of each of them that are looked at, in a longer file."""
+
 Row = tuple[int, list[str]]
 
 _NUMBER = re.compile(NUMBER)
@@ -59,7 +62,7 @@ def read_text(path: Path, encoding: str | None = None) -> ExportText:
         raise InputError(f"could not be read: {error.strerror or error}", file=path) from error
     check_text(path, data[:4096])
     content = decoded(path, data, encoding)
-    if b"\r" in content.data and b"\n" not in content.data:
+    if b"\n" not in content.data and b"\r" in content.data:
         content = Decoded(content.data.replace(b"\r", b"\n"), content.encoding, content.doubt)
     if (at := content.data.find(b"\0")) >= 0:
         line = content.data.count(b"\n", 0, at) + 1
@@ -126,7 +129,7 @@ def _separator(path: Path, data: bytes) -> str:
     head = head_lines(data)
     tail: list[str] = []
     if len(data) > HEAD:
-        head, tail = head[:-1], _LINE_ENDS.split(data[-TAIL:].decode("utf-8", "replace"))[1:]
+        head, tail = head[:-1][:_SAMPLE], _LINE_ENDS.split(data[-TAIL:].decode("utf-8", "replace"))[1:][-_SAMPLE:]
     sample = [line[:MAX_LINE] for line in (*head, *tail) if line.strip()]
     if not sample:
         raise InputError("no data rows", file=path, hint="the file holds no text")

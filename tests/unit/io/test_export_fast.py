@@ -165,6 +165,19 @@ def test_damage_far_behind_is_told_alike(
     same(path)
 
 
+@pytest.mark.parametrize(
+    "first", ['Film,5" wide', 'Note,"a\nb"', "", "\n\n", "sep=,", "\ufeffOperator,Łukasz", "Müller"]
+)
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "cp1250"])
+def test_what_stands_above_shifts_nothing(tmp_path: Path, of_any_size: None, first: str, encoding: str) -> None:
+    path = tmp_path / "a.csv"
+    path.write_bytes((first + "\n" + "\n".join(lines_of(300)) + "\n").encode(encoding, "ignore"))
+    same(path)
+    (table,) = read_export(path).tables
+    column, _ = table.column(0)
+    assert column.values.tolist() == [i / 1000 for i in range(300)]
+
+
 @pytest.mark.parametrize("late", ["{i};{n}.234;5", "{i};{n},234;5", "{i};{i}.5;5", "{i};{i},5;5", "{i};{i};5"])
 def test_the_sign_of_decimals_may_show_late(tmp_path: Path, late: str) -> None:
     early = [f"{i};{i};5" for i in range(15_000)]
