@@ -9,7 +9,9 @@ the file. The CSV table holds the same with the specimen's name before it, and `
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Mapping
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +38,8 @@ _UNITS = {
     "segment": ("", "segment, as the machine counts"),
 }
 _DIGITS = "%.12g"
+_BLOCK = 10_000
+"""How a number is written; rows that are written at a time."""
 
 
 def write_force_csv(path: Path, export: MachineExport) -> None:
@@ -44,13 +48,18 @@ def write_force_csv(path: Path, export: MachineExport) -> None:
     Numbers have 12 digits. A name that a spreadsheet would take for a formula has an apostrophe before it.
     Raises InputError where the disk refuses.
     """
-    import pandas
-
-    tables = [pandas.DataFrame({"specimen": guarded(t.specimen), **_whole(t.columns)}) for t in export.tests]
-    order = [name for name in ("specimen", *KEYS.values()) if any(name in table for table in tables)]
-    merged = pandas.concat(tables, ignore_index=True)[order]
-    with written_whole(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
-        merged.to_csv(file, index=False, float_format=_DIGITS, lineterminator="\n", errors="backslashreplace")
+    names = [name for name in KEYS.values() if any(name in test.columns for test in export.tests)]
+    with (
+        written_whole(path) as temporary,
+        temporary.open("w", encoding="utf-8", errors="backslashreplace", newline="") as file,
+    ):
+        file.write(_row("specimen", *names) + "\n")
+        for test in export.tests:
+            none = np.full(len(test.lines), np.nan)
+            table = np.column_stack([test.columns.get(name, none) for name in names]) + 0.0  # -0 is written as 0
+            specimen = _row(guarded(test.specimen), "")
+            for at in range(0, len(table), _BLOCK):
+                file.writelines(f"{specimen}{row}\n" for row in _rows(table[at : at + _BLOCK]))
 
 
 def write_force_file(path: Path, export: MachineExport, provenance: Mapping[str, Any]) -> None:
@@ -118,15 +127,15 @@ def _read_test(reader: Reader, group: str) -> MachineTest:
     return MachineTest(reader.texts(f"{group}/specimen")[0], columns, lines)
 
 
-def _whole(columns: Mapping[str, FloatArray]) -> dict[str, Any]:
-    """The columns, counts as whole numbers where they are."""
-    import pandas
-
-    counts = {key: pandas.array(columns[key], dtype="Float64") for key in ("cycle", "segment") if key in columns}
-    whole = {key: count.astype("Int64") for key, count in counts.items() if _is_whole(columns[key])}
-    return {**columns, **whole}
+def _row(*cells: str) -> str:
+    """A row of texts, quoted where they have to be."""
+    made = StringIO()
+    csv.writer(made, lineterminator="").writerow(cells)
+    return made.getvalue()
 
 
-def _is_whole(values: FloatArray) -> bool:
-    there = values[np.isfinite(values)]
-    return bool((there == np.round(there)).all())
+def _rows(table: FloatArray) -> list[str]:
+    """Rows of numbers with commas between, nothing for NaN."""
+    form = ",".join([_DIGITS] * table.shape[1])
+    text = "\n".join([form] * len(table)) % tuple(table.ravel().tolist())
+    return text.replace("nan", "").split("\n")

@@ -1,5 +1,6 @@
 """Force files: what is written comes back, viewers find the plot, damage is refused, tables run no formulas."""
 
+import os
 from pathlib import Path
 
 import h5py
@@ -118,6 +119,15 @@ def test_the_table_is_read_back_and_runs_no_formula(tmp_path: Path) -> None:
         np.testing.assert_allclose(test.columns[name], values, rtol=1e-11)
 
 
+@pytest.mark.parametrize("name", ["A1", 'a "b", c', "nan", "%d", "Probe ü"])
+def test_any_name_of_a_specimen_comes_back(tmp_path: Path, name: str) -> None:
+    path = tmp_path / "a.csv"
+    write_force_csv(path, MachineExport(path, (MachineTest(name, FIRST, range(N)),), N, {}, {}, ()))
+    assert set(pandas.read_csv(path, keep_default_na=False, dtype=str)["specimen"]) == {name}
+    (test,) = read_machine_export(path).tests
+    assert test.specimen == name
+
+
 def test_specimens_of_a_table_stay_apart(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     both = (EXPORT.tests[0], MachineTest("=B", {**FIRST, "force_N": -FIRST["force_N"]}, range(N)))
@@ -132,7 +142,7 @@ def test_a_full_disk_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     def full(*_: object, **__: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(pandas.DataFrame, "to_csv", full)
+    monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(InputError, match="no space left on device; free some space"):
         write_force_csv(tmp_path / "a.csv", EXPORT)
     assert list(tmp_path.iterdir()) == []
