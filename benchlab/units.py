@@ -42,11 +42,13 @@ SPELLINGS = {
     **dict.fromkeys(("lb", "lbs", "pounds"), "lbf"),
     **dict.fromkeys(("kips", "klbf"), "kip"),
     **dict.fromkeys(("мм", "毫米", "millimeter", "millimeters"), "mm"),
+    **dict.fromkeys(("um", "micron", "microns"), "µm"),
     **dict.fromkeys(("inch", "inches", "zoll", "pulg"), "in"),
     **dict.fromkeys(
         ("second", "seconds", "secs", "sec.", "sek", "sek.", "sekunden", "seg", "segundos", "с", "秒"), "s"
     ),
     **dict.fromkeys(("msec", "毫秒"), "ms"),
+    **dict.fromkeys(("us", "usec"), "µs"),
     **dict.fromkeys(("minutes", "分"), "min"),
     **dict.fromkeys(("n/mm²", "n/mm^2", "n/mm2", "мпа", "兆帕"), "MPa"),
     **dict.fromkeys(("кпа", "千帕"), "kPa"),

@@ -65,7 +65,7 @@ def quantity_named(name: str) -> str | None:
     >>> quantity_named("Load 1"), quantity_named("Obciążenie"), quantity_named("Maximum Force")
     ('force', 'force', None)
     """
-    low = re.sub(r"[\s_]+", " ", _BRACKETS.sub("", name)).strip(" :.").lower()
+    low = re.sub(r"[\s_]+", " ", _BRACKETS.sub("", name)).strip(" :.#%").lower()
     return _WORDS.get(low) or _WORDS.get(re.sub(r"\s*(ch\s*)?\d+$", "", low))
 
 
@@ -105,8 +105,8 @@ def find_columns(
     chosen = []
     for quantity in sorted(named | measured, key="force".__ne__):
         columns = named.get(quantity) or measured[quantity]
-        if quantity == "extension" and quantity not in named and len(columns) > 1:
-            continue
+        if quantity != "force" and quantity not in named and len(columns) > 1:
+            continue  # several lengths or times without a name: none of them
         columns = [c for c in columns if not _DERIVED.match(c.label)] or columns
         if len(columns) > 1:
             listed = " and ".join(repr(printable(c.label)) for c in columns)
@@ -122,7 +122,7 @@ def _meaning(name: str, unit: str) -> tuple[str, str, bool] | None:
     if quantity == "pressure" and known and known[0] == "force":
         quantity = "force"  # P is a load as well
     if quantity is None:
-        by_unit = {"force": "force", "length": "extension"}.get(known[0]) if known else None
+        by_unit = {"force": "force", "length": "extension", "time": "time"}.get(known[0]) if known else None
         return (by_unit, known[1], False) if known and by_unit else None
     if quantity not in _PHYSICAL:
         return None if known else (quantity, "", True)

@@ -198,6 +198,30 @@ def test_a_header_in_two_rows_and_units_of_no_brackets(tmp_path: Path) -> None:
     assert export.inferred["header"] == "names in line 1 and 2, units in line 3"
 
 
+RESULTS = "Results\n,Max,Ext\n,(N),(mm)\n1,3.5,2.5\n\n"
+LAYOUTS = {  # as other makers of machines and loggers write
+    "testXpert": ("Prüfzeit;Standardkraft;Standardweg\ns;N;mm\n", "{t};{f};{x}\n", True),
+    "testXpert in brackets": ("Prüfzeit [s];Standardkraft [N];Standardweg [mm]\n", "{t};{f};{x}\n", True),
+    "Trapezium": ('"Name","1 _ 1"\n"Time","Force","Stroke"\n"sec","N","mm"\n', '"{t}","{f}","{x}"\n', False),
+    "MESUR": ("Reading,Load [N],Travel [mm],Time [sec.]\n", "7,{f},{x},{t}\n", False),
+    "TestSuite": ("Time\tCrosshead \tLoad \nsec\tmm\tN\n", "{t}\t{x}\t{f}\n", False),
+    "Nexygen": ("Load (N),Machine Extension from Preload (mm),Elapsed (s)\n", "{f},{x},{t}\n", False),
+    "Bluehill Universal": (RESULTS + "Raw\n,Time,Displacement,Force\n,(s),(mm),(N)\n", "{t}","{x}","{f}"\n', False),
+    "a logger": ("# v2\n#time_ms,force_mN,position_um\n", "{t}e3,{f}e3,{x}e3\n", False),
+    "capitals": ("TIME (S),LOAD (N),EXTENSION (MM)\n", "{t},{f},{x}\n", False),
+    "trailing separators": ("Zeit (s);Weg (mm);Kraft (N);\n", "{t};{x};{f};\n", True),
+    "sep=": ("sep=;\nTime (s);Force (N);Position (mm)\n", "{t};{f};{x}\n", True),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("maker", LAYOUTS)
+def test_layouts_of_other_makers(tmp_path: Path, maker: str) -> None:
+    head, row, comma = LAYOUTS[maker]
+    made = (row.format(t=f"{t:.6f}", x=f"{x:.6f}", f=f"{f:.6f}") for t, x, f in zip(TIME_S, EXTENSION_MM, FORCE_N))
+    rows = "".join(made)
+    check(read(tmp_path / "a.txt", head + (rows.replace(".", ",") if comma else rows)))
+
+
 def test_columns_by_place_whatever_the_order(tmp_path: Path) -> None:
     export = read(
         tmp_path / "a.csv", "1.5,35.0,0.1,1\n2.5,70.0,0.2,1\n", ExportOptions(columns="force_kN,pressure_kPa,time_s,-")
