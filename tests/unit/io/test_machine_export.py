@@ -206,7 +206,7 @@ LAYOUTS = {  # as other makers of machines and loggers write
     "MESUR": ("Reading,Load [N],Travel [mm],Time [sec.]\n", "7,{f},{x},{t}\n", False),
     "TestSuite": ("Time\tCrosshead \tLoad \nsec\tmm\tN\n", "{t}\t{x}\t{f}\n", False),
     "Nexygen": ("Load (N),Machine Extension from Preload (mm),Elapsed (s)\n", "{f},{x},{t}\n", False),
-    "Bluehill Universal": (RESULTS + "Raw\n,Time,Displacement,Force\n,(s),(mm),(N)\n", "{t}","{x}","{f}"\n', False),
+    "Bluehill Universal": (RESULTS + "Raw\n,Time,Displacement,Force\n,(s),(mm),(N)\n", ',"{t}","{x}","{f}"\n', False),
     "a logger": ("# v2\n#time_ms,force_mN,position_um\n", "{t}e3,{f}e3,{x}e3\n", False),
     "capitals": ("TIME (S),LOAD (N),EXTENSION (MM)\n", "{t},{f},{x}\n", False),
     "trailing separators": ("Zeit (s);Weg (mm);Kraft (N);\n", "{t};{x};{f};\n", True),
