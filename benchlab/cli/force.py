@@ -195,16 +195,24 @@ def _tell_blocked(blocked: dict[str, Any]) -> None:
     from rich.text import Text
 
     from benchlab.report.document import cut
+    from benchlab.report.force_figure import places_of
 
     names = [cut(name, 20) for name in blocked["actuators"]]
     shown = names if len(names) <= 4 else []
     table = Table(box=None, pad_edge=False)
     for head in ("pressure, MPa", "n", "mean, N", "SD, N", *shown):
         table.add_column(Text(head), justify="right")
+    places = places_of(blocked["largest"]["mean_N"], blocked["largest"]["sd_N"] or float("nan"))
     for row in blocked["pressures"]:
         bound = "≥ " * row["lower_bound"]
-        each = [f"{'≥ ' * a['lower_bound']}{_text(a['mean_N'])}" for a in row["by_actuator"]] if shown else []
-        cells = [f"{row['pressure_MPa']:g}", str(row["n"]), f"{bound}{_text(row['mean_N'])}", _text(row["sd_N"]), *each]
+        each = [f"{'≥ ' * a['lower_bound']}{_text(a['mean_N'], places)}" for a in row["by_actuator"]] if shown else []
+        cells = [
+            f"{row['pressure_MPa']:g}",
+            str(row["n"]),
+            f"{bound}{_text(row['mean_N'], places)}",
+            _text(row["sd_N"], places),
+            *each,
+        ]
         table.add_row(*map(Text, cells))
     console = Console(stderr=True, highlight=False)
     if not console.is_terminal:
@@ -216,5 +224,5 @@ def _tell_blocked(blocked: dict[str, Any]) -> None:
         click.echo(f"  warning: {printable(warning)}", err=True)
 
 
-def _text(value: float | None) -> str:
-    return "-" if value is None else f"{value:.2f}"
+def _text(value: float | None, places: int) -> str:
+    return "-" if value is None else f"{value:.{places}f}"

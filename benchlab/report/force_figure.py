@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from benchlab.force.curve import BlockedForce
 from benchlab.force.line import Estimate, ForceLine
 from benchlab.report.figures import DPI, figure_class
 from benchlab.report.panels import BAND, BLUE, GREY, dress
+from benchlab.report.rounding import decimals_of, digits, number
 from benchlab.report.wording import drawable
 from benchlab.stats.wording import p_equals
 
@@ -33,15 +35,9 @@ def draw_force_figure(found: BlockedForce, drawn: bool = False) -> Figure:
     many = f"{len(found.actuators)} actuator{'s' * (len(found.actuators) != 1)}"
     title = f"Blocked force of {many}" + (": drawn, not measured" if drawn else "")
     figure.text(0.72 / 6.4, 1 - 0.27 / height, title, fontsize=12, fontweight="bold", parse_math=False)
-    for number, text in enumerate(lines):
-        figure.text(
-            0.72 / 6.4,
-            (0.14 + 0.2 * (len(lines) - 1 - number)) / height,
-            text,
-            fontsize=9,
-            color=GREY,
-            parse_math=False,
-        )
+    for row, text in enumerate(lines):
+        y = (0.14 + 0.2 * (len(lines) - 1 - row)) / height
+        figure.text(0.72 / 6.4, y, text, fontsize=8.5, color=GREY, parse_math=False)
     return figure
 
 
@@ -106,55 +102,54 @@ def line_words(found: BlockedForce) -> list[str]:
     if found.line is None:
         return [f"No line: {found.line_reason}.", lever]
     line = found.line
-    origin = f"F = b·p: b = {_ends(line.through_origin_N_per_MPa, 'N/MPa')}"
-    words = [
-        f"F = a + b·p: {equation(line)}; {100 * line.confidence:g} % intervals",
-        origin,
+    slope = line.slope_N_per_MPa.value
+    force_N = slope * float(line.pressure_MPa.max())
+    of = f"; {100 * line.confidence:g} % intervals" if np.isfinite(line.slope_N_per_MPa.low) else ""
+    return [
+        f"F = a + b·p: a = {_ends(line.intercept_N, 'N', force_N)}, b = {_ends(line.slope_N_per_MPa, 'N/MPa', slope)}",
+        f"F = b·p: b = {_ends(line.through_origin_N_per_MPa, 'N/MPa', slope)}{of}",
         _quality(line),
-        linearity_words(line),
+        *linearity_words(line),
         lever,
     ]
-    return [text for text in words if text]
 
 
-def equation(line: ForceLine) -> str:
-    """`a = 0.10 N (−0.90 to 1.10), b = 107 N/MPa (103 to 111)`."""
-    return f"a = {_ends(line.intercept_N, 'N')}, b = {_ends(line.slope_N_per_MPa, 'N/MPa')}"
-
-
-def linearity_words(line: ForceLine) -> str:
-    """The tests of linearity."""
+def linearity_words(line: ForceLine) -> list[str]:
+    """The tests of linearity, one each."""
     straight = line.linearity
     if straight is None:
-        return "linearity: not tested, which needs two actuators and three pressures"
+        return ["linearity: not tested, which needs two actuators and three pressures"]
     a, b = straight.df
-    bow = (
-        f"; bow in the middle {_ends(straight.bow_N, 'N')}, {p_equals(straight.bow_p)}"
-        if np.isfinite(straight.bow_p)
-        else ""
-    )
-    return f"lack of fit F({a}, {b}) = {straight.F:.2f}, {p_equals(straight.p)}{bow}"
+    words = [f"lack of fit F({a}, {b}) = {straight.F:.2f}, {p_equals(straight.p)}"]
+    if np.isfinite(straight.bow_p):
+        words.append(
+            f"bow in the middle {_ends(straight.bow_N, 'N', line.slope_N_per_MPa.value * float(line.pressure_MPa.max()))}, {p_equals(straight.bow_p)}"
+        )
+    return words
+
+
+def places_of(largest_N: float, sd_N: float) -> int:
+    """Decimals of forces: two at least, and enough for two digits of their standard deviation, or of a hundredth of the largest.
+
+    >>> places_of(37.07, 1.08), places_of(0.0421, 0.0011), places_of(0.5, math.nan)
+    (2, 4, 4)
+    """
+    return max(2, decimals_of(sd_N if math.isfinite(sd_N) and sd_N > 0 else abs(largest_N) / 100))
 
 
 def _quality(line: ForceLine) -> str:
-    sd = (
-        ""
-        if not np.isfinite(line.residual_sd_N)
-        else f", residual SD {line.residual_sd_N:.2g} N about each actuator's own line"
-    )
-    return f"R² {line.r_squared:.4f}{sd}"
+    sd = f", residual SD {line.residual_sd_N:.2g} N about each actuator's own line"
+    return f"R² {line.r_squared:.4f}{sd if np.isfinite(line.residual_sd_N) else ''}"
 
 
-def _ends(one: Estimate, unit: str) -> str:
+def _ends(one: Estimate, unit: str, scale: float) -> str:
+    """A value with its interval, to two digits of its half width, and no finer than 1e-5 of the scale."""
     if not np.isfinite(one.low):
-        return f"{_short(one.value)} {unit}"
-    return f"{_short(one.value)} {unit} ({_short(one.low)} to {_short(one.high)})"
-
-
-def _short(value: float) -> str:
-    digits = 1 if abs(value) >= 10 else 2
-    text = f"{value:.{digits}f}"
-    return (text.lstrip("-") if not text.strip("-0.") else text).replace("-", "−")
+        return f"{digits(one.value, 4).text} {unit}"
+    places = min(decimals_of((one.high - one.low) / 2), decimals_of(abs(scale) / 1e4))
+    return (
+        f"{number(one.value, places).text} {unit} ({number(one.low, places).text} to {number(one.high, places).text})"
+    )
 
 
 def _plot_line(ax: Axes, line: ForceLine, largest: float) -> None:

@@ -10,7 +10,7 @@ from benchlab.force.curve import BlockedForce
 from benchlab.io.published import BLOCKED_FORCE
 from benchlab.io.study_values import DesignValues
 from benchlab.report.document import NONE, Block, Cell, Column, Pictures, Section, Table, Words, cut
-from benchlab.report.force_figure import draw_force_panel, linearity_words
+from benchlab.report.force_figure import draw_force_panel, linearity_words, places_of
 from benchlab.report.rounding import count, digits, number, words
 from benchlab.report.study.pictures import file_names
 from benchlab.report.study.report import StudyReport, probability, span_text
@@ -19,7 +19,6 @@ from benchlab.stats.comparison import compare_summaries
 from benchlab.stats.wording import p_equals
 
 MOST_PANELS = 12
-PLACES = 2
 
 
 def force_section(report: StudyReport) -> Section | None:
@@ -45,7 +44,8 @@ def _blocks(known: list[tuple[DesignValues, BlockedForce]]) -> Iterator[Block]:
         f"deviation between actuators. Line and band: mean of the actuators’ own lines with its interval; dashed: extended.{off}",
     )
     yield _forces_table(known)
-    yield _lines_table(known)
+    if any(force.line is not None for _, force in known):
+        yield _lines_table(known)
     for design, force in known:
         yield Words(_lever(design, force), head=f"Lever arm, {cut(design.name, 40)}:")
     for design, force in known:
@@ -55,11 +55,11 @@ def _blocks(known: list[tuple[DesignValues, BlockedForce]]) -> Iterator[Block]:
 
 def _found(force: BlockedForce) -> str:
     """The largest force and whether the line is straight, in words."""
-    last = len(force.pressure_MPa) - 1
-    spread = "" if not math.isfinite(force.sd_N[last]) else f" ± {number(float(force.sd_N[last]), PLACES).text}"
+    last, places = len(force.pressure_MPa) - 1, _places(force)
+    spread = "" if not math.isfinite(force.sd_N[last]) else f" ± {number(float(force.sd_N[last]), places).text}"
     bound = "≥ " * bool(force.lower_bound[:, last].any())
     size = f"{_many(int(force.n[last]), 'actuator')}, {_many(int(force.cycles.sum()), 'cycle')} at {_many(last + 1, 'pressure')}"
-    text = f"{bound}{number(float(force.over_actuators_N[last]), PLACES).text}{spread} N at {force.pressure_MPa[last]:g} MPa ({size})."
+    text = f"{bound}{number(float(force.over_actuators_N[last]), places).text}{spread} N at {force.pressure_MPa[last]:g} MPa ({size})."
     if force.line is None:
         return f"{text} No line: {force.line_reason}."
     straight = force.line.linearity
@@ -67,7 +67,7 @@ def _found(force: BlockedForce) -> str:
         return f"{text} Linearity was not tested, which needs two actuators and three pressures."
     shown = straight.p < 1 - force.line.confidence
     verdict = "It is not linear in pressure" if shown else "Nothing speaks against a line"
-    return f"{text} {verdict}: {linearity_words(force.line)}."
+    return f"{text} {verdict}: {'; '.join(linearity_words(force.line))}."
 
 
 def _paper(design: DesignValues, force: BlockedForce) -> tuple[float, float, float] | None:
@@ -93,9 +93,10 @@ def _beside_paper(design: DesignValues, force: BlockedForce) -> str | None:
         ).games_howell[0]
     except BenchlabError:
         return f"{text}."
-    span = span_text(pair.low, pair.high, PLACES)
+    places = _places(force)
+    span = span_text(pair.low, pair.high, places)
     return (
-        f"{text}: here − paper {number(mean - paper[1], PLACES).text} N ({span} N; Welch’s t test, {p_equals(pair.p)})."
+        f"{text}: here − paper {number(mean - paper[1], places).text} N ({span} N; Welch’s t test, {p_equals(pair.p)})."
     )
 
 
@@ -112,15 +113,16 @@ def _forces_table(known: list[tuple[DesignValues, BlockedForce]]) -> Table:
 
 def _force_rows(design: DesignValues, force: BlockedForce) -> Iterator[tuple[Cell, ...]]:
     line = None if force.line is None else force.line.at(force.pressure_MPa)
+    places = _places(force)
     for j, pressure in enumerate(force.pressure_MPa.tolist()):
         bound = bool(force.lower_bound[:, j].any())
-        mean = number(float(force.over_actuators_N[j]), PLACES)
+        mean = number(float(force.over_actuators_N[j]), places)
         middle, low, high = (None, None, None) if line is None else (float(values[j]) for values in line)
-        ends = None if low is None or not math.isfinite(low) else span_text(low, high, PLACES)
+        ends = None if low is None or not math.isfinite(low) else span_text(low, high, places)
         yield (
             words(design.name, 40), digits(pressure, 4), count(int(force.n[j])), count(int(force.cycles[:, j].sum())),
-            Cell(mean.value, "≥ " * bound + mean.text), number(float(force.sd_N[j]), PLACES), count(int(bound)), number(middle, PLACES),
-            number(low, PLACES), number(high, PLACES), Cell(None, ends or NONE),
+            Cell(mean.value, "≥ " * bound + mean.text), number(float(force.sd_N[j]), places), count(int(bound)), number(middle, places),
+            number(low, places), number(high, places), Cell(None, ends or NONE),
         )  # fmt: skip
 
 
@@ -144,17 +146,18 @@ def _lines_table(known: list[tuple[DesignValues, BlockedForce]]) -> Table:
 def _line_row(design: DesignValues, force: BlockedForce) -> tuple[Cell, ...]:
     line = force.line
     assert line is not None
-    slope, start, straight = line.slope_N_per_MPa, line.intercept_N, line.linearity
+    slope, start, straight, places = line.slope_N_per_MPa, line.intercept_N, line.linearity, _places(force)
+    steep = places_of(slope.value, (slope.high - slope.low) / 4)
     ends = [
-        None if not math.isfinite(one.low) else span_text(one.low, one.high, places)
-        for one, places in ((slope, 1), (start, PLACES))
+        span_text(one.low, one.high, decimals) if math.isfinite(one.low) else NONE
+        for one, decimals in ((slope, steep), (start, places))
     ]
     return (
-        words(design.name, 40), number(slope.value, 1), number(slope.low, 1), number(slope.high, 1), Cell(None, ends[0] or NONE),
-        number(start.value, PLACES), number(start.low, PLACES), number(start.high, PLACES), Cell(None, ends[1] or NONE),
-        number(line.through_origin_N_per_MPa.value, 1), number(line.r_squared, 4), digits(line.residual_sd_N, 2),
+        words(design.name, 40), number(slope.value, steep), number(slope.low, steep), number(slope.high, steep), Cell(None, ends[0]),
+        number(start.value, places), number(start.low, places), number(start.high, places), Cell(None, ends[1]),
+        number(line.through_origin_N_per_MPa.value, steep), number(line.r_squared, 4), digits(line.residual_sd_N, 2),
         digits(None if straight is None else straight.F), probability(None if straight is None else straight.p),
-        number(None if straight is None else straight.bow_N.value, PLACES),
+        number(None if straight is None else straight.bow_N.value, places),
         probability(None if straight is None or not math.isfinite(straight.bow_p) else straight.bow_p),
     )  # fmt: skip
 
@@ -181,6 +184,10 @@ def _lever(design: DesignValues, force: BlockedForce) -> str:
         f"{text} A round tube of this perimeter held straight has a moment of about p·π·R³ = {moment:.0f} N·mm at {pressure:g} MPa; "
         f"the force would be that at a lever arm of {moment / force_N:.1f} mm."
     )
+
+
+def _places(force: BlockedForce) -> int:
+    return places_of(float(force.over_actuators_N[-1]), float(force.sd_N[-1]))
 
 
 def _many(number: int, what: str) -> str:
