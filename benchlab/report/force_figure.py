@@ -122,9 +122,8 @@ def linearity_words(line: ForceLine) -> list[str]:
     a, b = straight.df
     words = [f"lack of fit F({a}, {b}) = {straight.F:.2f}, {p_equals(straight.p)}"]
     if np.isfinite(straight.bow_p):
-        words.append(
-            f"bow in the middle {_ends(straight.bow_N, 'N', line.slope_N_per_MPa.value * float(line.pressure_MPa.max()))}, {p_equals(straight.bow_p)}"
-        )
+        bow = _ends(straight.bow_N, "N", line.slope_N_per_MPa.value * float(line.pressure_MPa.max()))
+        words.append(f"bow in the middle {bow}, {p_equals(straight.bow_p)}")
     return words
 
 
