@@ -9,7 +9,8 @@ from pathlib import Path
 
 from benchlab.errors import InputError, printable
 from benchlab.io.export_columns import column_unit, known_words
-from benchlab.io.export_text import Row, all_numbers, is_number
+from benchlab.io.export_numbers import is_number
+from benchlab.io.export_text import Row, all_numbers
 
 _UNIT_CELL = re.compile(r"\s*[(\[][^()\[\]]*[)\]]\s*")
 _NO_READING = re.compile(

@@ -24,6 +24,7 @@ NO_NUMBER, EXPONENT, PADDED, BARE = -1, -2, -3, -4
 """In place of a count of decimals: a cell without a number, with an exponent, a whole number that begins with a zero, one that ends
 in its decimal sign."""
 
+_NUMBER = re.compile(NUMBER)
 _WITH_UNIT = re.compile(rf"({NUMBER})\s*[A-Za-zµμ°%²³]+[/A-Za-z0-9²³^]*")
 _GROUP = r"[+\-−]?[1-9]\d{0,2}"
 _ONE_GROUP = re.compile(rf"{_GROUP}[.,]\d{{3}}")
@@ -54,6 +55,11 @@ class Column:
     unreadable: tuple[tuple[int, str], ...] = ()
 
 
+def is_number(cell: str) -> bool:
+    """Whether a cell is meant as a number."""
+    return bool(_NUMBER.fullmatch(cell))
+
+
 def find_signs(path: Path, cells: Iterable[tuple[int, str]], separator: str, stated: str | None = None) -> Signs:
     """The signs in (line, cell), with cells that are no numbers passed over. stated: the decimal sign, as an option gives it.
 
@@ -63,14 +69,17 @@ def find_signs(path: Path, cells: Iterable[tuple[int, str]], separator: str, sta
     vague: dict[str, tuple[int, str]] = {}
     grouped = ""
     for line, cell in cells:
-        if not ("." in cell or "," in cell):
+        points, commas = cell.count("."), cell.count(",")
+        if points + commas == 0 or (points + commas == 1 and ("." if points else ",") in lines):
+            continue  # says nothing, or nothing new
+        if not is_number(cell):
             continue
         decimal, thousands = _told(cell)
         grouped = grouped or thousands
         if decimal:
             lines.setdefault(decimal, (line, cell))
-        elif not thousands and (sign := "," if "," in cell else "."):
-            vague.setdefault(sign, (line, cell))
+        elif not thousands:
+            vague.setdefault("," if commas else ".", (line, cell))
     if stated:
         return Signs(stated, "," if stated == "." else ".", stated=True)
     if len(lines) == 2:
@@ -78,6 +87,8 @@ def find_signs(path: Path, cells: Iterable[tuple[int, str]], separator: str, sta
         what = f"decimal points (line {point}) and decimal commas (line {comma}, {printable(text)!r})"
         hint = "use one; --decimal says which it is where the other marks thousands"
         raise InputError(what, file=path, where=f"line {max(point, comma)}", hint=hint)
+    if grouped in lines:
+        grouped = ""  # two decimal signs in a cell
     sign = next(iter(lines), "") or {"": "", ".": ",", ",": "."}[grouped]
     if not sign and "." in vague and "," not in vague and separator == ",":
         sign = "."
@@ -171,7 +182,7 @@ class _Cells:
         if len(cell) > MAX_NUMBER:
             what = f"{name}cell of {len(cell)} characters, a number has at most {MAX_NUMBER}"
             raise InputError(what, file=self.path, where=where, hint="export it again, or mend the cell")
-        if not re.fullmatch(NUMBER, cell):
+        if not is_number(cell):
             if _WITH_UNIT.fullmatch(cell):
                 hint = "put the unit in the header, as in Load (N)"
                 raise InputError(f"{name}unit in a cell: {printable(cell)!r}", file=self.path, where=where, hint=hint)

@@ -17,7 +17,7 @@ from benchlab.io.export_damage import check_decimals
 from benchlab.io.export_fast import read_plain
 from benchlab.io.export_layout import Span, find_layout
 from benchlab.io.export_numbers import Column, Lines, Signs, find_signs, numbers
-from benchlab.io.export_text import ExportText, Row, is_number, read_text, rows_of
+from benchlab.io.export_text import ExportText, Row, read_text, rows_of
 
 _SHORT = re.compile(r"[+-]?\d+([.,]\d*)?")
 
@@ -95,7 +95,7 @@ def _read_strictly(text: ExportText, decimal: str | None) -> Export:
     rows, unpaired = rows_of(text)
     layout = find_layout(text.path, rows, unpaired, text.is_whole)
     inside = (row for span in layout.spans for row in rows[span.first : span.last])
-    cells = ((line, cell) for line, cells in inside for cell in cells if is_number(cell))
+    cells = ((line, cell) for line, cells in inside for cell in cells)
     signs = find_signs(text.path, cells, text.separator, decimal)
     tables = []
     for span in layout.spans:

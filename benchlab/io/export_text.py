@@ -11,7 +11,7 @@ from pathlib import Path
 from benchlab.errors import InputError, printable
 from benchlab.io.delimited import MAX_BYTES, MAX_COLUMNS, MAX_LINE
 from benchlab.io.encoding import Decoded, check_text, decoded
-from benchlab.io.export_numbers import NUMBER
+from benchlab.io.export_numbers import NUMBER, is_number
 from benchlab.io.files import check_regular_file
 
 MAX_ROWS = 3_000_000
@@ -28,7 +28,6 @@ _SAMPLE = 150
 
 Row = tuple[int, list[str]]
 
-_NUMBER = re.compile(NUMBER)
 _ROW = re.compile(rf"(?:{NUMBER})?(?:\t(?:{NUMBER})?)*")
 _WITH_UNIT = re.compile(rf"(?:^|(?<=[,;\t\"|]))\s*(?:{NUMBER})\s*[a-zA-Zµ%]{{1,4}}\s*(?=[,;\t\"|]|$)")
 _LINE_ENDS = re.compile(r"\r\n|\r|\n")
@@ -97,11 +96,6 @@ def split_lines(path: Path, lines: Sequence[str], separator: str) -> tuple[list[
         if any(stripped):
             rows.append((number, stripped))
     return rows, unpaired
-
-
-def is_number(cell: str) -> bool:
-    """Whether a cell is meant as a number."""
-    return bool(_NUMBER.fullmatch(cell))
 
 
 def all_numbers(cells: Sequence[str]) -> bool:
