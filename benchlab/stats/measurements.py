@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from decimal import Context, Decimal, DecimalException
+from decimal import Decimal, DecimalException
 
 import numpy as np
 
@@ -17,7 +17,6 @@ Value = str | int | float | Decimal
 FEW_DIGITS = 7.0
 """A warning is given where float64 would keep fewer digits of the values' differences."""
 
-_EXACT = Context(prec=2000)
 _FLOAT_DIGITS = 15.95
 
 
@@ -78,7 +77,7 @@ def measurements_of(
         row = int(np.flatnonzero(~np.isfinite(floats))[0])
         raise InputError(f"{printable(values[row])!r} is not a finite number", where=f"value {row + 1}")
     origin = exact[int(np.argpartition(floats, (len(floats) - 1) // 2)[(len(floats) - 1) // 2])]
-    deviations = np.array([float(_EXACT.subtract(value, origin)) for value in exact])
+    deviations = np.array([float(value - origin) for value in exact])
     if not np.isfinite(deviations).all():
         raise InputError("the values differ by more than a float can hold")
     as_text = not any(isinstance(value, float) for value in values)

@@ -24,6 +24,16 @@ def test_plant_growth_as_r_prints_it() -> None:
     assert of_welch.p == pytest.approx(0.01739, abs=5e-6)
 
 
+def test_effect_sizes_of_plant_growth() -> None:
+    """η² 3.76634 / 14.25843 (rstatix::anova_test: ges 0.264); ω² (3.76634 − 2·0.388596)/(14.25843 + 0.388596); ends of the interval at
+    which the noncentral F puts 2.5 % on either side."""
+    found = one_way(grouped(PLANT_GROWTH))
+    assert found.eta_squared is not None and found.omega_squared is not None and found.interval is not None
+    assert (round(found.eta_squared, 3), round(found.omega_squared, 4)) == (0.264, 0.2041)
+    for share, below in zip(found.interval, (0.975, 0.025)):
+        assert stats.ncf.cdf(found.F, 2, 27, 30 * share / (1 - share)) == pytest.approx(below, rel=1e-6)
+
+
 def test_insect_sprays_as_r_prints_them() -> None:
     """R: summary(aov(count ~ spray, InsectSprays)); oneway.test(count ~ spray, InsectSprays)."""
     groups = grouped(INSECT_SPRAYS)

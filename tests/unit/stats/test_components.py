@@ -4,6 +4,7 @@ import warnings
 
 import numpy as np
 import pytest
+from scipy import stats
 from statsmodels.regression.mixed_linear_model import MixedLM
 
 from benchlab.stats.anova import one_way
@@ -27,6 +28,16 @@ def test_mosquito_wings_of_sokal_and_rohlf() -> None:
     assert found.cycle.variance == pytest.approx(1.30, abs=0.005) and found.cycle.df == 12
     assert found.sample.variance == pytest.approx(94.94, abs=0.005)
     assert found.design.variance == pytest.approx(17.71, abs=0.005)
+
+
+def test_williams_interval_of_the_wings() -> None:
+    """As Searle, Casella and McCulloch give it (Variance Components, table 3.2): SSA·(1 − F_U/F)/(n·χ²_U) to SSA·(1 − F_L/F)/(n·χ²_L)."""
+    measured = nested(MOSQUITO_WINGS)
+    found = find_components(groups_of(measured), measured.cycles()).sample
+    ms, within = 191.18638, 1.3016667
+    for end, q in ((found.low, 0.975), (found.high, 0.025)):
+        variance = 9 * ms * (1 - stats.f.ppf(q, 9, 12) / (ms / within)) / (2 * stats.chi2.ppf(q, 9))
+        assert end == pytest.approx(variance**0.5, rel=1e-6)
 
 
 def test_reml_is_ems_where_samples_have_as_many_cycles() -> None:
