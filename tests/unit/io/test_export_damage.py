@@ -48,6 +48,8 @@ REFUSED = {
     "unknown unit (62)": ("Time (s),Load (foo)\n" + "0.1,1.5\n" * 3, 2, "unit 'foo' of 'Load' is not one of force .N, kN"),
     "decimal commas between commas (64)": (HEAD + "0,1,1,5,10,5\n" * 5, 3, "line 3: row has 6 fields, header 3"),
     "a field more in each row (65)": (HEAD + "0.1,1.5,2.5,9\n" * 5, 3, "line 3: row has 4 fields, header 3"),
+    "a field more than names with units (65)": ("Time (s),Load (N)\n" + "0.1,2.5,9\n" * 5, 3, "line 2: row has 3 fields, header 2"),
+    "a name more than fields (65)": ("Time (s),Load (N),Extension (mm)\n" + "0.1,2.5\n" * 5, 3, "line 2: row has 2 fields, header 3"),
     "a field more in one row (66)": (HEAD + table(r7="1.5,9"), 3, "line 10: row has 4 fields, the first one .line 3. 3"),
     "a field less in one row": (HEAD + table().replace("0.07,0.70,", "0.07,"), 3, "line 10: row has 2 fields"),
     "zeros of a disk (71)": (HEAD + table(r5="1\x00.5"), 3, "line 8: binary data"),
@@ -127,6 +129,7 @@ def test_failed_readings_are_counted_and_missing(tmp_path: Path, text: str, row:
         ("0.40,4.00,25.00", ""),
         ("0.", ""),
         ("0.40,4.00,", ""),
+        ("0.40,4.00,", "\n"),
     ],
 )
 def test_a_last_line_that_was_cut_is_left_out_and_named(tmp_path: Path, last: str, end: str) -> None:
@@ -185,6 +188,10 @@ def test_values_cut_to_whole_numbers_are_lost_decimals_and_round_ones_are_not() 
     decimals = np.full(60, 2, np.int16)
     values[30:], decimals[30:] = np.floor(values[30:]), 0
     assert lost_decimals(Column(values, decimals)) == (30, "'5' has no decimals, the 30 numbers before it have 2")
+    single = np.round(np.linspace(5, 6, 150), 2)
+    with_one = np.full(150, 2, np.int16)
+    single[120], with_one[120] = 5, 0
+    assert lost_decimals(Column(single, with_one)) == (120, "'5' has no decimals, the 120 numbers before it have 2")
     # A spreadsheet leaves zeros at the end out: 12.5, 13, 13.5 is no damage; nor are four digits throughout: 524.7, 1152.
     half = np.arange(40) / 2
     assert lost_decimals(Column(half, np.tile([0, 1], 20).astype(np.int16))) is None

@@ -219,7 +219,29 @@ def test_layouts_of_other_makers(tmp_path: Path, maker: str) -> None:
     head, row, comma = LAYOUTS[maker]
     made = (row.format(t=f"{t:.6f}", x=f"{x:.6f}", f=f"{f:.6f}") for t, x, f in zip(TIME_S, EXTENSION_MM, FORCE_N))
     rows = "".join(made)
-    check(read(tmp_path / "a.txt", head + (rows.replace(".", ",") if comma else rows)))
+    export = read(tmp_path / "a.txt", head + (rows.replace(".", ",") if comma else rows))
+    check(export)
+    assert not any(key.startswith("sep") for key in export.preamble)
+
+
+def test_p_is_a_load_or_a_pressure_by_its_unit_and_words_of_phases_are_left_out(tmp_path: Path) -> None:
+    text = "Time (s),P (N),Phase\n" + "".join(f"{i / 10},{i}.5,{'up' if i < 6 else 'down'}\n" for i in range(12))
+    export = read(tmp_path / "a.csv", text)
+    assert list(export.tests[0].columns) == ["time_s", "force_N"]
+    assert export.warnings == ("column 'Phase' holds no numbers and was left out",)
+    both = read(tmp_path / "b.csv", "P (kPa),Load (N)\n" + "35.0,1.5\n36.0,2.5\n")
+    assert both.tests[0].columns["pressure_MPa"].tolist() == [0.035, 0.036]
+
+
+def test_forces_without_time_beside_results(tmp_path: Path) -> None:
+    export = read(tmp_path / "a.csv", RESULTS + "Load (N),Cycle\n1.5,1\n2.5,1\n3.5,2\n")
+    assert export.tests[0].columns["force_N"].tolist() == [1.5, 2.5, 3.5] and len(export.tests) == 1
+    assert export.warnings == ("the table in line 4 (Max, Ext) holds no raw data and was left out",)
+
+
+def test_empty_columns_need_no_name(tmp_path: Path) -> None:
+    (test,) = read(tmp_path / "a.csv", "1,5;0,1;\n2,5;0,2;\n", ExportOptions(columns="force_N,time_s")).tests
+    assert test.columns["force_N"].tolist() == [1.5, 2.5]
 
 
 def test_columns_by_place_whatever_the_order(tmp_path: Path) -> None:
