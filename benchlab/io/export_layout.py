@@ -9,7 +9,7 @@ from pathlib import Path
 
 from benchlab.errors import InputError, printable
 from benchlab.io.export_columns import column_unit, known_words
-from benchlab.io.export_numbers import is_number
+from benchlab.io.export_numbers import has_unit, is_number
 from benchlab.io.export_text import Row, all_numbers
 
 _UNIT_CELL = re.compile(r"\s*[(\[][^()\[\]]*[)\]]\s*")
@@ -183,7 +183,9 @@ def _is_units(cells: Sequence[str]) -> bool:
 
 def _is_names(cells: Sequence[str], width: int, has_units: bool) -> bool:
     """Whether a row names columns: words, and no number but a specimen's over the first column."""
-    if any(is_number(cell) for cell in cells[1:]) or not any(cell and not is_number(cell) for cell in cells):
+    if any(is_number(cell) or has_unit(cell) for cell in cells[1:]) or not any(
+        cell and not is_number(cell) for cell in cells
+    ):
         return False
     if known_words(cells):
         return True

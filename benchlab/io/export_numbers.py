@@ -60,6 +60,15 @@ def is_number(cell: str) -> bool:
     return bool(_NUMBER.fullmatch(cell))
 
 
+def has_unit(cell: str) -> bool:
+    """Whether a cell is a number with a unit behind it.
+
+    >>> has_unit("2 kN"), has_unit("2"), has_unit("Strain 2")
+    (True, False, False)
+    """
+    return bool(_WITH_UNIT.fullmatch(cell))
+
+
 def find_signs(path: Path, cells: Iterable[tuple[int, str]], separator: str, stated: str | None = None) -> Signs:
     """The signs in (line, cell), with cells that are no numbers passed over. stated: the decimal sign, as an option gives it.
 
@@ -183,7 +192,7 @@ class _Cells:
             what = f"{name}cell of {len(cell)} characters, a number has at most {MAX_NUMBER}"
             raise InputError(what, file=self.path, where=where, hint="export it again, or mend the cell")
         if not is_number(cell):
-            if _WITH_UNIT.fullmatch(cell):
+            if has_unit(cell):
                 hint = "put the unit in the header, as in Load (N)"
                 raise InputError(f"{name}unit in a cell: {printable(cell)!r}", file=self.path, where=where, hint=hint)
             return

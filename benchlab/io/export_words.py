@@ -60,6 +60,6 @@ PREAMBLE_WORDS = (
     *("vzorek", "průměr", "tloušťka", "šířka", "délka", "napětí", "rychlost", "sebesség", "vastagság", "szélesség"),
     *("试样", "应力", "应变", "速度", "宽度", "厚度", "长度", "标距", "编号", "最大", "试验", "结果", "日期", "样品"),
     *("試験", "応力", "ひずみ", "速度", "試料", "幅", "厚さ", "시편", "응력", "변형률", "두께", "образец", "напряжение", "ширина"),
-    *("deformação", "ø", "°c"),
+    *("deformação", "ø", "°c", "mm²", "mm³", "µm", "±"),
 )  # fmt: skip
 """Words of preambles, in lower case, that tell one encoding from another."""

@@ -28,6 +28,7 @@ def test_plain_ascii_is_called_so() -> None:
     ("text", "name"),
     [
         ("Prüfgeschwindigkeit;5\n", "cp1252"),
+        ("Spannung;5;N/mm²\n", "cp1252"),
         ("Tensión máxima;5\n", "cp1252"),
         ("Šířka vzorek tloušťka;5\n", "cp1250"),
         ("试样;时间;力\n", "gbk"),

@@ -239,6 +239,14 @@ def test_forces_without_time_beside_results(tmp_path: Path) -> None:
     assert export.warnings == ("the table in line 4 (Max, Ext) holds no raw data and was left out",)
 
 
+def test_a_preamble_is_no_header(tmp_path: Path) -> None:
+    text = "Load cell,2 kN\nSpeed,5 mm/min\n1.5,0.1\n2.5,0.2\n3.5,0.3\n"
+    export = read(tmp_path / "a.csv", text, ExportOptions(columns="force_N,time_s"))
+    assert export.preamble == {"Load cell": "2 kN", "Speed": "5 mm/min"} and export.rows == 3
+    with pytest.raises(UsageError, match="2 columns without names or units"):
+        read(tmp_path / "a.csv", text)
+
+
 def test_empty_columns_need_no_name(tmp_path: Path) -> None:
     (test,) = read(tmp_path / "a.csv", "1,5;0,1;\n2,5;0,2;\n", ExportOptions(columns="force_N,time_s")).tests
     assert test.columns["force_N"].tolist() == [1.5, 2.5]
