@@ -6,6 +6,7 @@ export_numbers  cells -> numbers               decimal sign, thousands; export_d
 export_columns  names, units -> quantities     export_words: what labs call them
 export_table    all of these, for any file     export_fast: the same for long files of plain numbers
 export_tests    tables -> specimens            export_time: a time that runs backwards
+export_told     what was inferred, in words    force_file: the table in N, mm and s, written and read back
 """
 
 from __future__ import annotations
