@@ -68,7 +68,6 @@ def one_way(groups: Sequence[Group], confidence: float = 0.95) -> OneWay:
     total = sum(group.n for group in groups)
     grand = math.fsum(group.n * group.deviation for group in groups) / total
     between = math.fsum(group.n * (group.deviation - grand) ** 2 for group in groups)
-    between -= math.fsum(group.n * (group.deviation - grand) for group in groups) ** 2 / total
     within = math.fsum(group.ss for group in groups)
     a, b = len(groups) - 1, total - len(groups)
     if within == 0:

@@ -43,7 +43,7 @@ class Comparison:
 
     @property
     def alpha(self) -> float:
-        return 1 - self.confidence
+        return round(1 - self.confidence, 12)
 
     def as_json(self) -> dict[str, Any]:
         """What `benchlab stats --json` prints: plain numbers, None for what is not defined, and then a reason beside it."""
@@ -120,7 +120,7 @@ def _compared(
         assumptions=look_at_assumptions(groups),
         components=components,
         repeatability=find_repeatability(groups, cycles, components),
-        power=find_power(sd, size, len(groups), 1 - confidence, difference) if sd > 0 else None,
+        power=find_power(sd, size, len(groups), round(1 - confidence, 12), difference) if sd > 0 else None,
         warnings=tuple(told),
     )
 

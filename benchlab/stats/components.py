@@ -84,15 +84,15 @@ def find_components(groups: Sequence[Group], cycles: Cycles | None, confidence: 
     )
     if cycles is None or within is None or within.df == 0:
         sample = _lowest(ms_samples, df_samples, confidence)
-        return Components("EMS", None, sample, design, _warnings(design=design))
+        return Components("EMS", None, sample, design, _warnings(group=design))
     cycle = _lowest(within.ms, within.df, confidence)
     sample = _between(ms_samples, df_samples, within.ms / within.cycles, within.df, 1.0, confidence)
     if within.balanced or within.ss == 0:
-        return Components("EMS", cycle, sample, design, _warnings(sample=sample, design=design))
+        return Components("EMS", cycle, sample, design, _warnings(sample=sample, group=design))
     of_cycle, of_sample = reml_variances(cycles)
     cycle = Component(of_cycle, of_cycle, cycle.low, cycle.high, cycle.df)
     sample = Component(of_sample, of_sample, sample.low, sample.high, sample.df)
-    return Components("REML", cycle, sample, design, _warnings(sample=sample, design=design))
+    return Components("REML", cycle, sample, design, _warnings(sample=sample, group=design))
 
 
 def _design(groups: Sequence[Group], ms_samples: float, df_samples: int, confidence: float) -> Component:

@@ -53,9 +53,9 @@ def mean_of(values: Iterable[float]) -> float:
 
 
 def squares_about(values: FloatArray, centre: float) -> float:
-    """Sum of (value − centre)² with Björck's correction for a centre that is rounded; 0 where only rounding is left of it."""
+    """Sum of (value − centre)²; 0 where only rounding is left of it."""
     about = values - centre
-    squares = math.fsum((about * about).tolist()) - math.fsum(about.tolist()) ** 2 / len(values)
+    squares = math.fsum((about * about).tolist())
     noise = _NOISE * float(np.abs(values).max())
     return squares if squares > len(values) * noise * noise else 0.0
 

@@ -118,8 +118,10 @@ def _names(tables: Sequence[Table], found: Comparison) -> list[str]:
     ]
 
 
-_ALL = ("comparison.json", "groups.csv", "tests.csv", "pairs.csv", "components.csv", "consistency.csv", "power.csv",
-        "bars.svg", "bars.png", "intervals.svg", "intervals.png")  # fmt: skip
+_ALL = frozenset(
+    ("comparison.json", "groups.csv", "tests.csv", "pairs.csv", "components.csv", "consistency.csv", "power.csv",
+     "bars.svg", "bars.png", "intervals.svg", "intervals.png")
+)  # fmt: skip
 
 
 def _check_outputs(out: Path, source: Path, overwrite: bool) -> None:
@@ -127,7 +129,7 @@ def _check_outputs(out: Path, source: Path, overwrite: bool) -> None:
         raise UsageError("no such folder", file=out.parent, hint="make it, or choose another --out")
     if out.exists() and not out.is_dir():
         raise UsageError("is not a folder", file=out, hint="choose another --out")
-    for path in (out / name for name in _ALL if (out / name).exists()):
+    for path in (out / name for name in sorted(_ALL) if (out / name).exists()):
         if path.resolve() == source.resolve():
             raise UsageError("is read here and would be replaced", file=path, hint="choose another --out")
         check_new_file(path, overwrite)
@@ -146,8 +148,11 @@ def _write(out: Path, found: Comparison, value: str, tables: Sequence[Table], do
             for name, figure in _figures(found, value, document["file"]).items():
                 (stage / f"{name}.svg").write_text(svg_of(figure), encoding="utf-8")
                 save_png(figure, stage / f"{name}.png")
-            for path in sorted(stage.iterdir()):
-                path.replace(out / path.name)
+            made = {path.name for path in stage.iterdir()}
+            for name in sorted(made):
+                (stage / name).replace(out / name)
+        for name in _ALL.difference(made):  # of a comparison before this one, which would tell another story
+            (out / name).unlink(missing_ok=True)
     except OSError as error:
         if error.filename is None:
             raise cannot_write(error, out) from error

@@ -273,7 +273,11 @@ def test_everything_is_written_and_nothing_replaced(table: Path, benchlab) -> No
     again = benchlab("stats", table, *COLUMNS, "--out", out)
     assert again.code == 2 and "exists; choose another --out, or replace it with --overwrite" in again.err
     assert {path.name: path.read_bytes() for path in out.iterdir()} == before
+    write(table, GOOD.replace("12.6", "12").replace("12.2", "12").replace("10.4", "10.1").replace("9.9", "10.1"))
     assert benchlab("stats", table, *COLUMNS, "--out", out, "--overwrite").code == 0
+    assert names - {path.name for path in out.iterdir()} == {
+        "power.csv"
+    }  # nothing scatters: no power, and none left over
 
 
 def test_a_table_is_not_replaced_by_its_own_results(tmp_path: Path, benchlab) -> None:

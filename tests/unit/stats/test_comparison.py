@@ -66,10 +66,18 @@ def test_five_hundred_groups() -> None:
 
 
 def test_disagreeing_tests_are_told_both() -> None:
-    found = of("a: 10 10.1 9.9 10 10.1, b: 10.4 10.5 10.4 10.3 10.5, c: 5 15")
-    assert found.anova.p is not None and found.anova.p > 0.05 and found.welch.p is not None
-    assert "Welch agrees" in verdict(found) or "Welch DISAGREES" in verdict(found)
-    assert any("a and b: Tukey" in w and "Games–Howell" in w for w in found.warnings)
+    """One group scatters twenty times as much: the pooled variance hides what the two others show."""
+    found = compare_summaries(["a", "b", "c"], [5, 5, 5], [10.0, 11.5, 10.7], [0.3, 0.3, 6.0])
+    assert verdict(found).startswith(
+        "No difference between the groups is shown: F(2, 12) = 0.2336, p = 0.8 (Welch DISAGREES: F(2, 7.12)"
+    )
+    assert "the classical ANOVA (p = 0.8) and Welch's (p = 0.0004) disagree at 0.05" in found.warnings
+    assert any(w.startswith("a and b: Tukey (p = 0.78) and Games–Howell") for w in found.warnings)
+    assert any("between groups came out negative" in w for w in found.warnings)
+    agreed = compare_summaries(["a", "b"], [5, 5], [10.0, 11.5], [0.3, 0.3])
+    assert (
+        verdict(agreed).startswith("The groups differ") and "Welch agrees" in verdict(agreed) and agreed.warnings == ()
+    )
 
 
 def test_cycles_are_counted_and_told() -> None:
@@ -125,3 +133,11 @@ def flat(value: object) -> list[float]:
     if isinstance(value, list):
         return [x for one in value for x in flat(one)]
     return [float(value)] if isinstance(value, int | float) and not isinstance(value, bool) else []
+
+
+def test_groups_unlike_in_size() -> None:
+    """Power takes the harmonic mean of 2, 3 and 6; a group of one sample is told and left out of what needs two."""
+    found = of("a: 1 2, b: 3 4 6, c: 5 6 7 5 8 6")
+    assert found.power is not None and found.power.n == pytest.approx(3.0)
+    lone = of("a: 1 2, b: 3 4 6, c: 5")
+    assert "one sample in c: left out of Welch's ANOVA and Games–Howell, which need two" in lone.warnings

@@ -63,6 +63,37 @@ def test_unlike_numbers_of_cycles_as_statsmodels_fits_them() -> None:
     assert found.sample.variance == pytest.approx(float(fit.cov_re[0, 0]), rel=1e-3)
 
 
+def test_samples_that_do_not_differ_have_no_variance_between_them() -> None:
+    """statsmodels' MixedLM stops at a singular matrix for such data. At ρ = 0 the variance is that of all cycles about their design."""
+    rows = [
+        ("a", "1", 1.0),
+        ("a", "1", 3.0),
+        ("a", "2", 2.1),
+        ("b", "1", 7.0),
+        ("b", "1", 5.0),
+        ("b", "2", 6.0),
+        ("b", "2", 6.2),
+    ]
+    groups, samples, values = zip(*rows)
+    found = find_components(
+        groups_of(measurements_of(groups, values, samples)), measurements_of(groups, values, samples).cycles()
+    )
+    assert found.method == "REML" and found.sample.variance == 0 and found.cycle is not None
+    a, b = np.array(values[:3]), np.array(values[3:])
+    assert found.cycle.variance == pytest.approx((((a - a.mean()) ** 2).sum() + ((b - b.mean()) ** 2).sum()) / 5)
+
+
+def test_cycles_that_hardly_scatter_beside_samples_that_do() -> None:
+    """Samples 2 apart, cycles 1e-5: as good as one value a sample, whose variance is 4."""
+    values = {f"s{i}": [x + 1e-5 * e for e in (-1, 1, 0)[: 2 + i % 2]] for i, x in enumerate((8.0, 10.0, 12.0))}
+    rows = [("a", name, x) for name, row in values.items() for x in row] + [
+        ("b", name, x + 1) for name, row in values.items() for x in row
+    ]
+    groups, samples, numbers = zip(*rows)
+    within, between = reml_variances(measurements_of(groups, numbers, samples).cycles())
+    assert between == pytest.approx(4.0, rel=1e-6) and within == pytest.approx(1e-10 * 1.5, rel=0.1)
+
+
 @pytest.mark.parametrize("cycles", [(6, 6), (3, 9)])
 def test_intervals_hold_the_truth(cycles: tuple[int, int]) -> None:
     """Truth 0.5 within and 3 between samples; 95 % intervals of 60 drawn studies (chance of fewer than 50: 1 in 10,000)."""

@@ -59,8 +59,9 @@ def test_scatter_of_a_constant_is_none(offset: str) -> None:
 def test_rounding_is_not_taken_for_scatter() -> None:
     """Samples whose cycles have one mean, 0.2, in ways that float64 rounds unlike each other."""
     values, samples = ["0.1", "0.3", "0.2", "0.7", "-0.3", "0.2"], ["1", "1", "2", "3", "3", "3"]
-    found = groups_of(measurements_of(["a"] * 6, values, samples))[0]
-    assert found.n == 3 and found.ss == 0.0
+    others = ["1.07"] * 9, [str(i) for i in range(9)]  # of another group, so that the middle value is theirs
+    found = groups_of(measurements_of(["a"] * 6 + ["b"] * 9, values + others[0], samples + others[1]))[0]
+    assert found.n == 3 and found.ss == 0.0 and np.ptp(found.deviations) > 0
     found = groups_of(measurements_of(["a"] * 3, ["1.0000000001", "1", "1"]))[0]
     assert found.ss == pytest.approx(2 / 3 * 1e-20, rel=1e-12)
 
