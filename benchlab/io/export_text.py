@@ -135,7 +135,19 @@ def _separator(path: Path, data: bytes) -> str:
 
     counts = {separator: count(separator) for separator in SEPARATORS}
     best = max(SEPARATORS, key=counts.__getitem__)
+    if best == "," and counts[" "] == counts[","]:
+        _check_blanks(path, data)
     return best if counts[best] else _by_numbers(path, data, sample)
+
+
+def _check_blanks(path: Path, data: bytes) -> None:
+    """Raises InputError for a line as `0,100 200,500`: decimal commas between blanks, or blanks for thousands between commas."""
+    for number, line in enumerate(head_lines(data), 1):
+        cells = [cell.strip() for cell in line.split(",")]
+        if any(" " in cell for cell in cells) and all_numbers(cells) and all_numbers(line.split()):
+            what = f"{printable(line[:40])!r} could be separated by commas or by blanks"
+            hint = "export it with semicolons or tabs between the columns"
+            raise InputError(what, file=path, where=f"line {number}", hint=hint)
 
 
 def _by_numbers(path: Path, data: bytes, sample: Sequence[str]) -> str:

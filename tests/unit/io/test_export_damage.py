@@ -68,6 +68,7 @@ REFUSED = {
     "decimals lost in one cell": (HEAD + table(r7="20875"), 3, LOST),
     "two decimal signs": (HEAD + table(r7="20.8.75"), 3, "line 10: .*two decimal signs in '20.8.75'"),
     "three groups": (SEMI + table(separator=";", r7="20.875.125"), 3, "line 10: .*two decimal signs in '20.875.125'"),
+    "commas or blanks": ("0,100 200,500\n0,200 201,500\n", 3, "line 1: '0,100 200,500' could be separated by commas or by blanks; export"),
     "points and commas": (SEMI + table(separator=";", r7="20,85"), 3, BOTH),
     "text for a header of numbers": ("a;b\nc;d\ne;f\n", 3, "no data rows: no line with two numbers in it"),
     "an empty cell in most rows": (HEAD + "0.1,1.5,\n" * 9 + "0.2,1.5,2.5\n", 3, "9 of 10 cells .* hold no number, all empty"),
