@@ -180,6 +180,7 @@ def test_check_of_the_sample_study_is_complete(benchlab: Callable) -> None:
 def test_check_lists_all_that_is_missing_at_once(bench: Path, benchlab: Callable) -> None:
     shutil.copy(bench / "tw3_slw5_s1.csv", bench / "copy.csv")
     write_clip(bench / "film.mp4", frames=3)
+    write_clip(bench / "low.mp4", frames=4)
     os.mkfifo(bench / "pipe.mp4")
     (bench / "study.yaml").write_text("""\
 title: T
@@ -191,7 +192,7 @@ designs:
     samples: {s1: tw3_slw5_s1.csv, s2: copy.csv, s3: film.mp4, s4: pipe.mp4, s5: {recordings: none.mp4, left_out: leaked}}
     force: [none.csv]
   b:
-    samples: {s1: tw3_slw10_s1.csv, s2: [], s3: {recordings: film2.mp4, analysis: {ramp: '0:0.1:1'}}}
+    samples: {s1: tw3_slw10_s1.csv, s2: [], s3: {recordings: low.mp4, analysis: {ramp: '0:0.1:1'}}}
   c:
     samples: {s1: {recordings: [tw3_slw10_s2.csv, gone.mp4]}}
 sets:
@@ -206,7 +207,7 @@ sets:
         ("a", "no simulated angle"),
         ("a none, none.csv", "no such file"),
         ("b s2", "the sample has no recording"),
-        ("b s3, film2.mp4", "no such file"),
+        ("b s3, low.mp4", "its pressure reaches 0.1 MPa at most, 0.35 MPa are wanted"),
         ("b", "1 samples that count, a comparison takes 2 at least"),
         ("c s1, gone.mp4", "no such file"),
         ("c", "1 samples that count, a comparison takes 2 at least"),

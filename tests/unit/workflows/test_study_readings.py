@@ -73,7 +73,7 @@ def test_a_table_of_frames_uses_sure_frames_and_says_where_it_could_not(tmp_path
         (2, 0.3, 60, ""),
         (3, 0.3, 60, ""),
         (4, 0.3, 90, "poor fit"),
-        (5, 0.3, 60, ""),
+        (5, 0.3, 60, "markers left out"),
     ]
     text = head + "".join(f"{i},{i / 30},{a},0.1,0,0,0,7,0.1,{p},{flag}\n" for i, p, a, flag in rows)
     (cycle,) = read(tmp_path, text).cycles

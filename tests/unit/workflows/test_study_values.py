@@ -155,7 +155,9 @@ def test_what_is_left_out_does_not_count_and_is_no_failure(bench: Path) -> None:
 s1: [a.mp4, {file: b.mp4, left_out: camera moved}]
 s2: {recordings: none.mp4, left_out: leaked}
 s3: [{file: gone.mp4, left_out: never copied}, b2.mp4]
+s4: {recordings: c.csv, left_out: cut askew}
 """
+    (bench / "c.csv").write_text("cycle,angle_deg\n1,20\n")
     draw_film(bench / "b2.mp4", (60.0, 61.0), seed=7)
     values = collected(study_of(bench, samples))
     (design,) = values.designs
@@ -164,6 +166,7 @@ s3: [{file: gone.mp4, left_out: never copied}, b2.mp4]
     assert values.failures == ()
     assert {(each.sample, each.recording, each.why) for each in values.left_out} == {
         ("s1", "b.mp4", "camera moved"), ("s2", "", "leaked"), ("s3", "gone.mp4", "never copied"),
+        ("s4", "", "cut askew"),
     }  # fmt: skip
     left = values.designs[0].samples[0].recordings[1]
     assert left.cycles[0].angle_deg == pytest.approx(60, abs=0.3)
