@@ -7,6 +7,8 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from benchlab.errors import InputError, UsageError, printable
 from benchlab.io.export_words import COLUMN_WORDS, PREAMBLE_WORDS
 
@@ -37,6 +39,7 @@ _CODE_PAGES = ("cp1252", "cp1250", "gbk", "cp1251", "cp1254", "cp932", "cp949", 
 """Encodings that are tried on a file that is not UTF-8; where two give the same text, the first is named."""
 
 _WORDS = [w for w in {w for words in COLUMN_WORDS.values() for w in words} | set(PREAMBLE_WORDS) if not w.isascii()]
+_LINE_END = re.compile(rb"[\r\n]")
 _CUT = ("unexpected end of data", "truncated data", "incomplete multibyte sequence")
 
 
@@ -122,8 +125,8 @@ def _utf8_end(data: bytes) -> int:
 
 def _by_words(data: bytes) -> Decoded:
     """The code page in which most known words appear; CP1252, with a doubt, where none tells."""
-    foreign = [line for line in re.split(rb"[\r\n]+", data) if not line.isascii()]
-    sample = b"\n".join(foreign[:500])
+    foreign = _foreign_lines(data)
+    sample = b"\n".join(foreign)
     found: dict[str, tuple[int, str]] = {}
     for name in _CODE_PAGES:
         try:
@@ -142,6 +145,20 @@ def _by_words(data: bytes) -> Decoded:
     shown = printable(foreign[0].decode(name, "replace").strip()[:40])
     doubt = f"not UTF-8 and no word tells its encoding: read as {name}, as in {shown!r}; --encoding settles it"
     return Decoded(data.decode(name, "replace").encode("utf-8"), name, doubt)
+
+
+def _foreign_lines(data: bytes, most: int = 500) -> list[bytes]:
+    """The first lines that are not ASCII."""
+    lines, end = [], 0
+    for at in np.flatnonzero(np.frombuffer(data, np.uint8) > 127).tolist():
+        if at >= end:
+            start = max(data.rfind(b"\n", 0, at), data.rfind(b"\r", 0, at)) + 1
+            found = _LINE_END.search(data, at)
+            end = found.start() if found else len(data)
+            lines.append(data[start:end])
+        if len(lines) == most:
+            break
+    return lines
 
 
 def _codec(name: str) -> str:
