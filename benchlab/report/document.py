@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -190,23 +189,6 @@ def cut(text: object, length: int = 60) -> str:
         return plain
     tail = min(max(4, length // 4), length // 2)
     return plain[: length - tail - 1] + "…" + plain[-tail:]
-
-
-def cut_apart(names: Sequence[str], length: int) -> list[str]:
-    """Names cut to a length; those that would look alike then are numbered.
-
-    >>> cut_apart(["x" * 30 + "1_end", "x" * 30 + "2_end", "short"], 12)
-    ['xxxx…_end #1', 'xxxx…_end #2', 'short']
-    """
-    short = [cut(name, length) for name in names]
-    alike = Counter(short)
-    told: Counter[str] = Counter()
-    for index, name in enumerate(short):
-        if alike[name] > 1:
-            told[name] += 1
-            tag = f" #{told[name]}"
-            short[index] = cut(names[index], max(length - len(tag), 5)) + tag
-    return short
 
 
 def _machine(value: Value) -> str:

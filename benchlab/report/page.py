@@ -5,12 +5,16 @@ from __future__ import annotations
 import re
 from importlib.resources import files
 
+from benchlab.errors import printable
 from benchlab.report.document import Block, Document, Items, Panel, Pictures, Table, Tiles, Words
 from benchlab.report.svg import inline_svg
 
 # Where a line must not be broken: within `p = 0.04`, `3 mm` and `2e-5`.
 _EXPONENT = re.compile(r"(?<=\de-)(?=\d)")
 _BINDS = re.compile(r"(?<=\bp) (?=[<=])|(?<=\bp [<=]) |(?<=\d) (?=mm|MPa|%)")
+
+
+_CONTROL = re.compile("[\\x00-\\x08\\x0b-\\x1f\\x7f-\\x9f]")
 
 
 def render_page(document: Document) -> str:
@@ -27,6 +31,7 @@ def render_page(document: Document) -> str:
         loader=FunctionLoader(template),
         autoescape=True,
         undefined=StrictUndefined,
+        finalize=_without_controls,
         trim_blocks=True,
         lstrip_blocks=True,
     )
@@ -36,6 +41,11 @@ def render_page(document: Document) -> str:
         environment.tests[name] = lambda block, kind=kind: isinstance(block, kind)
     page = environment.get_template("report.html.j2")
     return page.render(document=document, zip=zip, css=Markup(template("report.css")), numbers=numbered(document))
+
+
+def _without_controls(value: object) -> object:
+    """What an expression gives, with control characters in texts as escapes: HTML has no place for them."""
+    return _CONTROL.sub(lambda found: printable(found[0]), value) if type(value) is str else value
 
 
 def template(name: str) -> str:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
+
 import numpy as np
 
 from benchlab.errors import printable
@@ -22,6 +25,46 @@ def drawable(text: str, length: int) -> str:
         return text
     tail = min(max(4, length // 4), length // 2)
     return text[: length - tail - 1] + "…" + text[-tail:]
+
+
+def width_in(text: str, fontsize: float) -> float:
+    """Width of a text as a figure draws it, in inches."""
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import text_to_path
+
+    return float(text_to_path.get_text_width_height_descent(text, FontProperties(size=fontsize), ismath=False)[0]) / 72
+
+
+def fitted(text: str, inches: float, fontsize: float) -> str:
+    """Text as a figure can show it in so many inches: the middle cut out where it is longer.
+
+    >>> fitted("W" * 30, 0.8, 10), fitted("i" * 20, 0.8, 10)
+    ('WW…WW', 'iiiiiiiiiiiiiiiiiiii')
+    """
+    whole = drawable(text, 10_000)
+    width = width_in(whole, fontsize)
+    if width <= inches:
+        return whole
+    length = min(int(len(whole) * inches / width) + 4, len(whole) - 1)
+    while length > 3 and width_in(short := drawable(whole, length), fontsize) > inches:
+        length -= 1
+    return short
+
+
+def fitted_apart(names: Sequence[str], inches: float, fontsize: float) -> list[str]:
+    """Names fitted; those that would look alike then are numbered.
+
+    >>> fitted_apart(["x" * 30 + "1_end", "x" * 30 + "2_end", "short"], 1.0, 10)
+    ['xxx…_end #1', 'xxx…_end #2', 'short']
+    """
+    short = [fitted(name, inches, fontsize) for name in names]
+    alike, told = Counter(short), Counter[str]()
+    for index, name in enumerate(short):
+        if alike[name] > 1:
+            told[name] += 1
+            tag = f" #{told[name]}"
+            short[index] = fitted(names[index], inches - width_in(tag, fontsize), fontsize) + tag
+    return short
 
 
 def flag_groups(series: CurvatureSeries, most: int) -> list[tuple[str, np.ndarray]]:

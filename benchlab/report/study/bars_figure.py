@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from benchlab.report.document import cut_apart
 from benchlab.report.panels import BAND, BLUE, dress
 from benchlab.report.study.brackets import Bracket, stack_brackets
 from benchlab.report.study.figures import MOST_ROWS, OTHER, TEXT, TITLE_IN, WIDE_IN, finish, name_rows, new_panel
-from benchlab.report.wording import drawable
+from benchlab.report.wording import drawable, fitted, fitted_apart, width_in
 from benchlab.units import FloatArray
 
 if TYPE_CHECKING:
@@ -24,7 +23,6 @@ MOST_BRACKETED = 6
 
 _POINT = "#333333"
 _BARS_IN, _STEP_IN, _ROW_IN = 2.55, 0.21, 0.22
-_LETTER_IN = 0.078  # width of a letter under a bar
 
 
 @dataclass(frozen=True)
@@ -53,7 +51,7 @@ def draw_bars(
     else:
         height = _BARS_IN + _STEP_IN * (_levels(pairs) + 1)
         figure, ax = new_panel(0.72 + bar_in * max(len(bars), 3), height + 0.82 + TITLE_IN, bottom=0.82, top=TITLE_IN)
-        plot_bars(ax, bars, pairs, label, _BARS_IN, _STEP_IN, int(bar_in * max(3 / len(bars), 1) / _LETTER_IN))
+        plot_bars(ax, bars, pairs, label, 0.88 * bar_in * max(len(bars), 3) / (len(bars) + 0.2))
     finish(figure, ax, title, columns=2)
     return figure
 
@@ -63,12 +61,9 @@ def plot_bars(
     bars: Sequence[Bar],
     pairs: Sequence[tuple[int, int, str]],
     label: str,
-    bars_in: float = _BARS_IN,
-    step_in: float = _STEP_IN,
-    letters: int = 8,
+    name_in: float,
 ) -> None:
-    """Bars, points and brackets in the manner of the paper's Figs 6c and 7c. bars_in: inches of height for the bars themselves;
-    letters: that fit under a bar."""
+    """Bars, points and brackets in the manner of the paper's Figs 6c and 7c. name_in: inches of width for a name under its bar."""
     at = np.arange(len(bars), dtype=float)
     means = np.array([bar.mean for bar in bars])
     ax.bar(at, means, width=0.56, color=BAND, edgecolor=BLUE, linewidth=1, label="mean")
@@ -79,14 +74,14 @@ def plot_bars(
     _simulated(ax, at + 0.36, bars, upright=True)
     reach = [max(0.0, _highest(bar)) for bar in bars]
     bottom = min(0.0, *(_lowest(bar) for bar in bars))
-    per_in = max(max(reach) - bottom, 1e-9) / bars_in
-    brackets = stack_brackets(pairs, reach, step_in * per_in)
+    per_in = max(max(reach) - bottom, 1e-9) / _BARS_IN
+    brackets = stack_brackets(pairs, reach, _STEP_IN * per_in)
     for bracket in brackets:
         _plot_bracket(ax, bracket, 0.07 * per_in)
     top = max([*reach, *(bracket.height for bracket in brackets)])
-    ax.set_ylim(bottom * 1.06, top + 1.1 * step_in * per_in)
+    ax.set_ylim(bottom * 1.06, top + 1.1 * _STEP_IN * per_in)
     ax.set_xlim(-0.6, len(bars) - 0.4)
-    ax.set_xticks(at, _two_lines([bar.name for bar in bars], letters), **TEXT)
+    ax.set_xticks(at, _two_lines([bar.name for bar in bars], name_in), **TEXT)
     dress(ax, None, label)
     ax.grid(False, axis="x")
     ax.tick_params(axis="x", length=0, labelsize=8.5, labelcolor="black")
@@ -102,7 +97,7 @@ def plot_rows(ax: Axes, bars: Sequence[Bar], label: str) -> None:
     ax.plot(means, at, "s", color=BLUE, markersize=4, label="mean", zorder=4)
     _error_bars(ax, at, bars, upright=False)
     _simulated(ax, at, bars, upright=False)
-    name_rows(ax, [bar.name for bar in bars], 36)
+    name_rows(ax, [bar.name for bar in bars], 0.4 * WIDE_IN)
     dress(ax, label, None)
     ax.grid(False, axis="y")
 
@@ -122,21 +117,25 @@ def spread(count: int) -> FloatArray:
     return 2 * found - 1
 
 
-def _two_lines(names: Sequence[str], length: int) -> list[str]:
+def _two_lines(names: Sequence[str], inches: float) -> list[str]:
     """Names for under bars: if one is too long for a line, all are broken after a sign between words; what is still too long is cut."""
+    size = TEXT["fontsize"]
     whole = [drawable(name, 10_000) for name in names]
-    if all(len(name) <= length for name in whole):
+    if all(width_in(name, size) <= inches for name in whole):
         return whole
-    broken = [_broken(name, length) for name in whole]
-    return (
-        broken if len(set(broken)) == len(set(names)) else [drawable(name, 10_000) for name in cut_apart(names, length)]
-    )
+    broken = [_broken(name, inches, size) for name in whole]
+    return broken if len(set(broken)) == len(set(names)) else fitted_apart(names, inches, size)
 
 
-def _broken(name: str, length: int) -> str:
-    breaks = [i + 1 for i, c in enumerate(name[:length]) if c in " _-,;/" and len(name) - i - 1 <= length]
-    middle = min(breaks, key=lambda i: abs(2 * i - len(name)), default=None)
-    return drawable(name, length) if middle is None else f"{name[:middle].rstrip()}\n{name[middle:]}"
+def _broken(name: str, inches: float, size: float) -> str:
+    """A name on two lines where both fit, else cut."""
+    for middle in sorted(
+        (i + 1 for i, sign in enumerate(name) if sign in " _-,;/"), key=lambda i: abs(2 * i - len(name))
+    ):
+        lines = name[:middle].rstrip(), name[middle:]
+        if len(name) < 200 and all(lines) and max(width_in(line, size) for line in lines) <= inches:
+            return "\n".join(lines)
+    return fitted(name, inches, size)
 
 
 def _levels(pairs: Sequence[tuple[int, int, str]]) -> int:

@@ -6,30 +6,31 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from benchlab.report.document import cut_apart
 from benchlab.report.panels import BLUE, GREY, dress
-from benchlab.report.study.figures import HALF_IN, OTHER, TEXT, new_panel
-from benchlab.report.wording import drawable
+from benchlab.report.study.figures import HALF_IN, OTHER, TEXT, WIDE_IN, new_panel
+from benchlab.report.wording import fitted, fitted_apart
 from benchlab.stats.consistency import Cell
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-MOST_CELLS = 80
+MOST_CELLS, MOST_DESIGNS = 80, 40
+_MOST_LEVEL = 6  # names that lie side by side
 
 
 def draw_consistency(cells: Sequence[Cell], statistic: str) -> Figure:
     """h or k (`statistic`) of up to MOST_CELLS cells; those beyond a critical value in another colour, with their names."""
-    figure, ax = new_panel(HALF_IN, 2.7, bottom=0.5)
-    plot_consistency(ax, cells[:MOST_CELLS], statistic)
+    many = len({_of(cell) for cell in cells}) > _MOST_LEVEL
+    figure, ax = new_panel(WIDE_IN if many else HALF_IN, 3.2 if many else 2.5, bottom=1.2 if many else 0.35)
+    plot_consistency(ax, cells[:MOST_CELLS], statistic, upright=many)
     return figure
 
 
-def plot_consistency(ax: Axes, cells: Sequence[Cell], statistic: str) -> None:
-    """A line from 0 to each value; dashed: critical values, which depend on how many replicates there are."""
-    levels = [(level, list(group)) for level, group in groupby(cells, key=lambda cell: cell.level or cell.laboratory)]
-    names = cut_apart([drawable(level, 200) for level, _ in levels], max(50 // max(len(levels), 1), 5))
+def plot_consistency(ax: Axes, cells: Sequence[Cell], statistic: str, upright: bool = False) -> None:
+    """upright: names stand on end. A line from 0 to each value; dashed: critical values, which depend on how many replicates there are."""
+    levels = [(level, list(group)) for level, group in groupby(cells, key=_of)]
+    names = fitted_apart([level for level, _ in levels], 1.0 if upright else 3.6 / len(levels), TEXT["fontsize"])
     left, middles, top = 0.0, [], 1.0
     for _, group in levels:
         for place, cell in enumerate(group):
@@ -42,7 +43,7 @@ def plot_consistency(ax: Axes, cells: Sequence[Cell], statistic: str) -> None:
             ax.plot(x, value, "o", color=colour, markersize=3)
             top = max(top, abs(value), critical or 0.0)
             if beyond:
-                ax.annotate(drawable(cell.laboratory, 12), (x, value), (0, 3 if value > 0 else -10), textcoords="offset points",
+                ax.annotate(fitted(cell.laboratory, 0.7, 7.5), (x, value), (0, 3 if value > 0 else -10), textcoords="offset points",
                             ha="center", color=OTHER, **{**TEXT, "fontsize": 7.5})  # fmt: skip
             if critical is not None:
                 for sign in (1, -1) if statistic == "h" else (1,):
@@ -55,7 +56,11 @@ def plot_consistency(ax: Axes, cells: Sequence[Cell], statistic: str) -> None:
     ax.set_ylim(-1.18 * top if statistic == "h" else 0, 1.18 * top)
     dress(ax, None, f"{statistic} of each {what_of(cells)}")
     ax.grid(False, axis="x")
-    ax.tick_params(axis="x", length=0, labelsize=8.5 if len(levels) < 6 else 7.5, labelcolor="black")
+    ax.tick_params(axis="x", length=0, labelsize=8.5, labelcolor="black", labelrotation=90 if upright else 0)
+
+
+def _of(cell: Cell) -> str:
+    return cell.level or cell.laboratory
 
 
 def what_of(cells: Sequence[Cell]) -> str:

@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from benchlab.report.document import cut_apart
 from benchlab.report.figures import DPI, figure_class
 from benchlab.report.panels import BAND, BLUE, GREY, dress
-from benchlab.report.wording import drawable
+from benchlab.report.wording import fitted, fitted_apart
 from benchlab.units import FloatArray
 
 if TYPE_CHECKING:
@@ -64,13 +63,13 @@ def draw_intervals(
     """Differences of means with simultaneous intervals, a row a pair; the first MOST_ROWS of them."""
     shown = intervals[:MOST_ROWS]
     figure, ax = new_panel(width_in, 0.83 + TITLE_IN + 0.27 * len(shown), bottom=0.73, top=TITLE_IN)
-    plot_intervals(ax, shown, label, confidence)
+    plot_intervals(ax, shown, label, confidence, 0.4 * width_in)
     finish(figure, ax, title, columns=2)
     return figure
 
 
-def plot_intervals(ax: Axes, intervals: Sequence[Interval], label: str, confidence: float) -> None:
-    """Tukey's interval over that of Games and Howell for each pair, against a line at no difference."""
+def plot_intervals(ax: Axes, intervals: Sequence[Interval], label: str, confidence: float, name_in: float) -> None:
+    """name_in: inches for a name. Tukey's interval over that of Games and Howell for each pair, against a line at no difference."""
     ax.axvline(0, color=GREY, linewidth=0.9, zorder=1)
     for index, (name, colour, marker, offset) in enumerate(
         (("Tukey HSD", BLUE, "o", -0.17), ("Games–Howell", OTHER, "s", 0.17))
@@ -81,7 +80,7 @@ def plot_intervals(ax: Axes, intervals: Sequence[Interval], label: str, confiden
             y, middle, low, high = np.array(rows).T
             ax.hlines(y, low, high, color=colour, linewidth=1.5)
             ax.plot(middle, y, marker, color=colour, markersize=3.8, label=f"{name}, {100 * confidence:g} %")
-    name_rows(ax, [one.name for one in intervals], 26)
+    name_rows(ax, [one.name for one in intervals], name_in)
     ax.margins(x=0.06)
     dress(ax, label, None)
     ax.grid(False, axis="y")
@@ -89,11 +88,12 @@ def plot_intervals(ax: Axes, intervals: Sequence[Interval], label: str, confiden
 
 def draw_angle_band(band: AngleBand, y_limits: tuple[float, float] | None = None, width_in: float = THIRD_IN) -> Figure:
     """θ against pressure of one design; y_limits: those that it shares with the other designs."""
-    figure, ax = new_panel(width_in, 2.5 if width_in == THIRD_IN else 3.2, left=0.55, bottom=0.46, top=TITLE_IN)
+    figure, ax = new_panel(width_in, 2.5 if width_in == THIRD_IN else 3.2, bottom=0.46, top=TITLE_IN)
     plot_angle_band(ax, band)
     if y_limits is not None:
         ax.set_ylim(*y_limits)
     write_title(figure, band.name)
+    make_room(figure, ax)
     return figure
 
 
@@ -110,28 +110,33 @@ def plot_angle_band(ax: Axes, band: AngleBand) -> None:
     dress(ax, "pressure (MPa)", "bending angle θ (°)")
 
 
-def new_panel(width: float, height: float, bottom: float, left: float = 0.62, top: float = 0.12) -> tuple[Figure, Axes]:
+def new_panel(width: float, height: float, bottom: float, top: float = 0.12, left: float = 0.62) -> tuple[Figure, Axes]:
     """A figure of one axes; all in inches."""
     figure = figure_class()(figsize=(width, height), dpi=DPI)
-    box = (left / width, bottom / height, (width - left - 0.1) / width, (height - bottom - top) / height)
+    box = (left / width, bottom / height, (width - left - 0.18) / width, (height - bottom - top) / height)
     return figure, figure.add_axes(box)
 
 
 def write_title(figure: Figure, title: str) -> None:
     """What a panel is of, over its left end, cut to its width."""
     width, height = figure.get_size_inches()
-    figure.text(0.06 / width, 1 - 0.06 / height, drawable(title, int(width / 0.1)), va="top", fontsize=9.5, fontweight="bold",
+    figure.text(0.06 / width, 1 - 0.06 / height, fitted(title, 0.8 * width, 9.5), va="top", fontsize=9.5, fontweight="bold",
                 parse_math=False)  # fmt: skip
 
 
 def finish(figure: Figure, ax: Axes, title: str, columns: int) -> None:
     """The title, room on the left for what stands there, and the legend at the foot."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
     write_title(figure, title)
     legend = figure.legend(*ax.get_legend_handles_labels(), loc="lower center", bbox_to_anchor=(0.5, 0.0), ncols=columns, fontsize=8.5,
                            frameon=False, borderaxespad=0.3, columnspacing=1.6, handletextpad=0.5)  # fmt: skip
     legend.set_in_layout(False)
+    make_room(figure, ax)
+
+
+def make_room(figure: Figure, ax: Axes) -> None:
+    """Let the axes begin where what stands on their left has room."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
     canvas = FigureCanvasAgg(figure)
     box, width = ax.get_position(), figure.bbox.width
     drawn = ax.yaxis.get_tightbbox(canvas.get_renderer())
@@ -139,7 +144,8 @@ def finish(figure: Figure, ax: Axes, title: str, columns: int) -> None:
     ax.set_position((left, box.y0, box.x1 - left, box.height))
 
 
-def name_rows(ax: Axes, names: Sequence[str], length: int) -> None:
-    ax.set_yticks(range(len(names)), [drawable(name, 10_000) for name in cut_apart(names, length)], **TEXT)
+def name_rows(ax: Axes, names: Sequence[str], inches: float) -> None:
+    """Names on the left of rows, the first on top, each up to so many inches wide."""
+    ax.set_yticks(range(len(names)), fitted_apart(names, inches, TEXT["fontsize"]), **TEXT)
     ax.set_ylim(len(names) - 0.4, -0.6)
     ax.tick_params(axis="y", length=0)

@@ -10,7 +10,7 @@ import numpy as np
 from benchlab.io.study_values import DesignValues
 from benchlab.report.document import Block, Pictures, Words, cut
 from benchlab.report.study.bars_figure import MOST_BRACKETED, Bar, draw_bars
-from benchlab.report.study.consistency_figure import MOST_CELLS, draw_consistency, what_of
+from benchlab.report.study.consistency_figure import MOST_CELLS, MOST_DESIGNS, draw_consistency, what_of
 from benchlab.report.study.figures import (
     HALF_IN,
     MOST_ROWS,
@@ -153,7 +153,7 @@ def consistency_blocks(report: StudyReport) -> Iterator[Block]:
     """h and k as figures, where there are few enough cells."""
     found = report.whole.found
     cells = () if found is None else found.repeatability.cells
-    if not cells or len(cells) > MOST_CELLS:
+    if not cells or len(cells) > MOST_CELLS or len(report.values.designs) > MOST_DESIGNS:
         return
     what = what_of(cells)
     panels = [

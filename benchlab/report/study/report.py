@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from statistics import median
 from typing import Any
 
@@ -58,7 +59,7 @@ class StudyReport:
         """The set of all designs."""
         return max(self.compared, key=lambda one: len(one.chosen.designs))
 
-    @property
+    @cached_property
     def places(self) -> int:
         """Decimals of angles: as many as give the usual standard deviation two digits."""
         spreads = [sd for design in self.values.designs if (sd := sd_of(design)) is not None and sd > 0]
