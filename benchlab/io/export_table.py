@@ -19,7 +19,7 @@ from benchlab.io.export_layout import Span, find_layout
 from benchlab.io.export_numbers import Column, Lines, Signs, find_signs, numbers
 from benchlab.io.export_text import ExportText, Row, read_text, rows_of
 
-_SHORT = re.compile(r"[+-]?\d+([.,]\d*)?")
+_SHORT = re.compile(r"(0|[1-9]\d{0,11})([.,]\d*)?")
 
 
 @dataclass(frozen=True)
@@ -51,9 +51,9 @@ class ExportTable:
     def texts(self, index: int) -> list[str]:
         """The cells of a column as texts, numbers in their shortest form."""
         if self.plain:
-            return [f"{value:g}" for value in self.plain[index].values]
+            return [f"{value:.12g}" for value in self.plain[index].values]
         cells = (cells[index] for _, cells in self.rows)
-        return [f"{float(cell.replace(',', '.')):g}" if _SHORT.fullmatch(cell) else cell for cell in cells]
+        return [f"{float(cell.replace(',', '.')):.12g}" if _SHORT.fullmatch(cell) else cell for cell in cells]
 
     def column(self, index: int, label: str = "") -> tuple[Column, list[str]]:
         """The numbers of a column, and notes. Raises InputError, with the line, for damaged ones. label: its name in messages."""
