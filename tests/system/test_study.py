@@ -232,3 +232,33 @@ def test_check_of_a_file_that_is_wrong_or_not_there(tmp_path: Path, benchlab: Ca
 def test_help_teaches(word: str, benchlab: Callable) -> None:
     done = benchlab("study", word, "--help")
     assert done.code == 0 and "Example" in done.out and f"benchlab study {word} " in done.out
+
+
+def test_new_finds_run_files_simulations_and_force_files_by_content(
+    bench: Path, drawn_clip: Path, benchlab: Callable, tmp_path: Path
+) -> None:
+    assert benchlab("analyze", drawn_clip, "--ramp", "0:0.35:1", "--out", tmp_path / "runs").code == 0
+    for suffix in ("h5", "csv", "png"):
+        shutil.copy(tmp_path / f"runs/trial.{suffix}", bench / f"tw3_slw5_s3.{suffix}")
+    done = benchlab("simulate", "--tw-mm", 3, "--slw-mm", 5, "--pressure-MPa", "0.1,0.35", "--out", bench / "sim")
+    assert done.code == 0
+    (bench / "force").mkdir()
+    for name in ("tw3_slw5_a1", "tw3_slw10_s1", "tw9_slw5_a1", "odd"):
+        shutil.copy(SAMPLE / "force/tw3_slw10_a1.csv", bench / "force" / f"{name}.csv")
+    found = benchlab("study", "new", bench, "--json").json
+    five, ten = found["designs"]
+    assert five["samples"]["s3"] == ["tw3_slw5_s3.h5"] and found["pressure_known"]
+    assert five["simulated"].startswith("sim/") and five["simulated"].endswith(".h5") and ten["simulated"] is None
+    assert (five["force"], ten["force"]) == (["force/tw3_slw5_a1.csv"], ["force/tw3_slw10_s1.csv"])
+    why = {each["file"]: each["why"] for each in found["unused"]}
+    assert "taken for its table" in why["tw3_slw5_s3.csv"]
+    assert why["force/tw9_slw5_a1.csv"] == "a force file of tw9_slw5, of which there is no recording"
+    assert "not named as a force file" in why["force/odd.csv"]
+
+    text = (bench / "study.yaml").read_text()
+    (bench / "study.yaml").write_text(
+        text.replace("    shell: {tw_mm: 3, slw_mm: 5}", "    shell: {tw_mm: 3, slw_mm: 6}")
+    )
+    missing = benchlab("study", "check", bench, "--json").json["missing"]
+    assert any("was simulated with slw_mm 5, the design in the study has 6" in each["why"] for each in missing)
+    assert any("no pressure of its cycles is known" in each["why"] for each in missing)
