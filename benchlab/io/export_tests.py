@@ -78,6 +78,9 @@ def _values(table: ExportTable, columns: Sequence[Chosen], warnings: list[str]) 
             warnings.append(f"column {printable(chosen.label)!r} holds no numbers and was left out")
             continue
         _check_cells(table, chosen, column, warnings)
+        if chosen.assumed and chosen.quantity != "force":
+            what = f"column {printable(chosen.label)!r} has no unit and was read in {chosen.unit}"
+            warnings.append(f"line {table.header[0]}: {what}; name the columns with --columns if that is wrong")
         yield (
             KEYS[chosen.quantity],
             column.values if is_count else _CONVERT[chosen.quantity](column.values, chosen.unit),

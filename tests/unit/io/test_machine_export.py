@@ -44,6 +44,9 @@ def test_separators_and_signs(
     assert export.inferred["separator"] == names[separator]
     assert export.inferred["decimal"] == {".": "point", ",": "comma"}[decimal]
     assert ("a unit that the file does not give" in export.inferred["time_s"]) == (units == "none")
+    said = [warning.split(": ")[1].split(";")[0] for warning in export.warnings]
+    unknown = ["column 'Time' has no unit and was read in s", "column 'Extension' has no unit and was read in mm"]
+    assert said == (unknown if units == "none" else [])
 
 
 @pytest.mark.parametrize("force", UNITS)
