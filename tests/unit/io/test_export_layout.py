@@ -138,6 +138,14 @@ def test_a_preamble_is_no_header(tmp_path: Path) -> None:
         read(tmp_path / "a.csv", text)
 
 
+def test_lengths_without_a_name_are_an_extension_only_if_there_is_one(tmp_path: Path) -> None:
+    one = read(tmp_path / "a.csv", "Time (s),Laser (mm),Load (N)\n0.1,1.5,2.5\n0.2,1.6,2.6\n")
+    assert one.tests[0].columns["extension_mm"].tolist() == [1.5, 1.6]
+    two = read(tmp_path / "b.csv", "Time (s),Laser (mm),Width (mm),Load (N)\n0.1,1.5,9.5,2.5\n0.2,1.6,9.5,2.6\n")
+    assert list(two.tests[0].columns) == ["time_s", "force_N"]
+    assert two.inferred["not used"] == "'Laser (mm)', 'Width (mm)'"
+
+
 def test_empty_columns_need_no_name(tmp_path: Path) -> None:
     (test,) = read(tmp_path / "a.csv", "1,5;0,1;\n2,5;0,2;\n", ExportOptions(columns="force_N,time_s")).tests
     assert test.columns["force_N"].tolist() == [1.5, 2.5]

@@ -22,7 +22,7 @@ N = 50
 TIME_S = np.arange(N) / 100
 FIRST = {
     "time_s": TIME_S,
-    "extension_mm": TIME_S / 3,
+    "extension_mm": TIME_S / -3,
     "force_N": np.sin(TIME_S) * 100,
     "pressure_MPa": np.full(N, 0.035),
     "cycle": np.repeat([1.0, 2.0], N // 2),
