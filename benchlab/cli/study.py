@@ -11,6 +11,12 @@ import click
 from benchlab.cli.options import Finite
 from benchlab.errors import BatchError, printable
 
+MOST_LINES = 20
+"""Files that are not in the study and are listed on the terminal."""
+
+MARKS = {"found": "", "missing": "!", "left out": "-"}
+WORDS = {"missing": "missing", "left_out": "left out", "notes": "note"}
+
 
 @click.group(short_help="Study files: designs, samples and their recordings.")
 def study() -> None:
@@ -91,8 +97,10 @@ def _tell_new(found: dict[str, Any], chosen: bool) -> None:
         click.echo(
             f"  proposed set {each['name']} ({each['title']}): {', '.join(map(printable, each['designs']))}", err=True
         )
-    for each in found["unused"]:
+    for each in found["unused"][:MOST_LINES]:
         click.echo(f"  not in it: {printable(each['file'])}: {printable(each['why'])}", err=True)
+    if len(found["unused"]) > MOST_LINES:
+        click.echo(f"  and {len(found['unused']) - MOST_LINES} more not in it, at the end of the file", err=True)
     if not found["pressure_known"]:
         click.echo("  the pressure is not known: give it in the file, or with --ramp or --pressure", err=True)
     click.echo(f"  compared at {found['pressure_MPa']:g} MPa", err=True)
@@ -160,7 +168,3 @@ def _tell_check(found: dict[str, Any]) -> None:
         click.echo(f"benchlab: {count} {'thing is' if count == 1 else 'things are'} missing (above)", err=True)
     else:
         click.echo(f"complete: all recordings reach {found['pressure_MPa']:g} MPa as far as is told", err=True)
-
-
-MARKS = {"found": "", "missing": "!", "left out": "-"}
-WORDS = {"missing": "missing", "left_out": "left out", "notes": "note"}

@@ -18,6 +18,8 @@ from benchlab.io.stills import natural_key
 from benchlab.io.study_parts import RUN_SUFFIXES, TABLE_SUFFIXES
 from benchlab.io.sweep_file import SCHEMA as SWEEP
 from benchlab.workflows.recordings import VIDEOS
+from benchlab.workflows.report_outputs import NUMBERS
+from benchlab.workflows.study_values import RECORDINGS
 
 MOST_FILES = 20_000
 
@@ -40,7 +42,7 @@ def look_into(folder: Path) -> Contents:
         )
     found = Contents()
     videos: dict[str, Path] = {}
-    paths = list(_paths(folder))
+    paths = list(_paths(folder, found))
     for path in paths:
         if path.suffix.lower() in VIDEOS and not path.is_dir():
             videos.setdefault(path.stem.casefold(), path)
@@ -63,7 +65,7 @@ def look_into(folder: Path) -> Contents:
     return found
 
 
-def _paths(folder: Path) -> Iterator[Path]:
+def _paths(folder: Path, found: Contents) -> Iterator[Path]:
     """Files, and folders that hold pictures alone, run files first: a table may be one of theirs."""
     count = 0
     for at, folders, files in os.walk(folder):
@@ -73,6 +75,10 @@ def _paths(folder: Path) -> Iterator[Path]:
         if count > MOST_FILES:
             what = f"holds more than {MOST_FILES} files"
             raise InputError(what, file=folder, hint="give the folder of the study alone")
+        if NUMBERS in names and RECORDINGS in folders:
+            found.unused.append((Path(at), "a report of benchlab"))
+            folders[:] = []
+            continue
         suffixes = {Path(name).suffix.lower() for name in names}
         if suffixes & PICTURES and not suffixes & (VIDEOS | RUN_SUFFIXES) and Path(at) != folder:
             yield Path(at)

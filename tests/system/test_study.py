@@ -234,6 +234,14 @@ def test_help_teaches(word: str, benchlab: Callable) -> None:
     assert done.code == 0 and "Example" in done.out and f"benchlab study {word} " in done.out
 
 
+def test_new_lists_many_files_shortly(bench: Path, benchlab: Callable) -> None:
+    for index in range(30):
+        (bench / f"log{index}.csv").write_text("time_s,pressure_MPa\n0,0\n")
+    done = benchlab("study", "new", bench)
+    assert done.err.count("not in it: ") == 20 and "and 10 more not in it" in done.err
+    assert (bench / "study.yaml").read_text().count("#   log") == 30
+
+
 def test_new_finds_run_files_simulations_and_force_files_by_content(
     bench: Path, drawn_clip: Path, benchlab: Callable, tmp_path: Path
 ) -> None:
@@ -245,12 +253,16 @@ def test_new_finds_run_files_simulations_and_force_files_by_content(
     (bench / "force").mkdir()
     for name in ("tw3_slw5_a1", "tw3_slw10_s1", "tw9_slw5_a1", "odd"):
         shutil.copy(SAMPLE / "force/tw3_slw10_a1.csv", bench / "force" / f"{name}.csv")
+    (bench / "out/recordings/tw3_slw5/s9").mkdir(parents=True)
+    (bench / "out/report.json").write_text("{}")
+    (bench / "out/recordings/tw3_slw5/s9/tw3_slw5_s9.csv").write_text("cycle,angle_deg\n1,5\n")
     found = benchlab("study", "new", bench, "--json").json
     five, ten = found["designs"]
     assert five["samples"]["s3"] == ["tw3_slw5_s3.h5"] and found["pressure_known"]
     assert five["simulated"].startswith("sim/") and five["simulated"].endswith(".h5") and ten["simulated"] is None
     assert (five["force"], ten["force"]) == (["force/tw3_slw5_a1.csv"], ["force/tw3_slw10_s1.csv"])
     why = {each["file"]: each["why"] for each in found["unused"]}
+    assert why["out"] == "a report of benchlab"
     assert "taken for its table" in why["tw3_slw5_s3.csv"]
     assert why["force/tw9_slw5_a1.csv"] == "a force file of tw9_slw5, of which there is no recording"
     assert "not named as a force file" in why["force/odd.csv"]
