@@ -90,7 +90,7 @@ def _compared(
     difference: float | None,
     warnings: tuple[str, ...],
 ) -> Comparison:
-    _check(confidence, difference)
+    check_options(confidence, difference)
     check_comparable(groups)
     told = [*warnings, *_about_groups(groups)]
     anova, of_welch = one_way(groups, confidence), welch(groups)
@@ -125,7 +125,8 @@ def _compared(
     )
 
 
-def _check(confidence: float, difference: float | None) -> None:
+def check_options(confidence: float, difference: float | None) -> None:
+    """Raises UsageError for a confidence or a wanted difference out of range."""
     if not 0.5 <= confidence <= 0.9999:
         raise UsageError(f"confidence {confidence:g} is not between 0.5 and 0.9999", hint="usual is 0.95")
     if difference is not None and not 0 < difference < float("inf"):

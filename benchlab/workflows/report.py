@@ -16,7 +16,7 @@ from benchlab.report.pdf import check_pdf
 from benchlab.report.study.document import study_document
 from benchlab.report.study.numbers import report_numbers
 from benchlab.report.study.report import ComparedSet, PublishedSet, SAME_PRESSURE_MPa, StudyReport
-from benchlab.stats.comparison import Comparison, compare, compare_summaries
+from benchlab.stats.comparison import Comparison, check_options, compare, compare_summaries
 from benchlab.stats.measurements import measurements_of
 from benchlab.workflows.provenance import made_by
 from benchlab.workflows.report_outputs import NUMBERS, PAGE, PDF, ReportOutputs, names_of, write_report
@@ -44,6 +44,7 @@ def report(
     written all the same. Raises UsageError and InputError; then there is no new report, and recordings that were analysed stay current.
     """
     asked = read_study(study / STUDY_FILE if study.is_dir() else study)
+    check_options(confidence, difference_deg)
     if pdf:
         check_pdf()
     outputs = ReportOutputs(out, "report", overwrite, names=(PAGE, *[PDF] * pdf, NUMBERS))
