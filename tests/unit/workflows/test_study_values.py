@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import shutil
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -65,8 +66,8 @@ def study_of(bench: Path, samples: str, more: str = "", name: str = "study.yaml"
     return bench / name
 
 
-def collected(path: Path, **options: object) -> StudyValues:
-    return collect(read_study(path), path.parent / "out", **options)  # type: ignore[arg-type]
+def collected(path: Path, **options: Any) -> StudyValues:
+    return collect(read_study(path), path.parent / "out", **options)
 
 
 def statuses(values: StudyValues) -> list[str]:
@@ -185,9 +186,9 @@ def test_after_ctrl_c_what_is_finished_is_current(bench: Path, monkeypatch: pyte
     kept = study_recordings.analyze
     seen: list[Path] = []
 
-    def partial(source: Path, *rest: object) -> dict[str, object]:
+    def partial(source: Path, *rest: Any) -> dict[str, Any]:
         seen.append(source)
-        return {**kept(source, *rest), "status": "partial"}  # type: ignore[arg-type]
+        return {**kept(source, *rest), "status": "partial"}
 
     monkeypatch.setattr(study_recordings, "analyze", partial)
     with pytest.raises(KeyboardInterrupt):
