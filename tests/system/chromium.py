@@ -76,7 +76,9 @@ def layout(page: str, width: int) -> Layout:
     """The faults of a page in a window of a width in px. Measured in a frame, on a copy that lets a script look."""
     assert "Content-Security-Policy" in page
     free = page.replace("Content-Security-Policy", "X-Not-A-Policy")
-    frame = f'<!doctype html><iframe style="border:0;width:{width}px;height:900px" srcdoc="{html.escape(free)}"></iframe>'
+    frame = (
+        f'<!doctype html><iframe style="border:0;width:{width}px;height:900px" srcdoc="{html.escape(free)}"></iframe>'
+    )
     outer = f'{frame}<script>document.querySelector("iframe").onload = () => {{ {MEASURE} }};</script>'
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "frame.html"
