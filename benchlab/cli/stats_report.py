@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 
     from benchlab.workflows.stats import StatsFound
 
-MOST_ROWS = 40
+MOST_ROWS, FEWEST_COLUMNS = 40, 6
+"""Rows shown, and columns that are shown however narrow the terminal."""
 
 
 def print_report(found: StatsFound) -> None:
@@ -25,7 +26,7 @@ def print_report(found: StatsFound) -> None:
 
     comparison, columns = found.comparison, found.document["columns"]
     console = Console(highlight=False, emoji=False)
-    console.width = max(console.width if console.is_terminal else 160, 100)
+    console.width = max(console.width, 80) if console.is_terminal else 160
     samples = sum(group.n for group in comparison.groups)
     what = cut(columns.get("value") or columns.get("mean"), 60)
     by = " and ".join(cut(name, 40) for name in columns["group"])
@@ -59,11 +60,20 @@ def _print_consistency(console: Console, found: Comparison, table: Table) -> Non
         click.echo("\nNothing is beyond a critical value of h or k (ASTM E691, 0.5 %).")
 
 
+def _least_width(shown: list[tuple[int, Column]], rows: tuple[tuple[Cell, ...], ...]) -> int:
+    """Of a table: numbers are not broken, the first column is not broken into less than 16 letters."""
+    widths = [max(len(column.head), *(len(row[i].text) for row in rows[:MOST_ROWS])) for i, column in shown]
+    return 16 + sum(2 + width for width in widths[1:])
+
+
 def _print(console: Console, table: Table, rows: tuple[tuple[Cell, ...], ...]) -> None:
     from rich.table import Table as RichTable
     from rich.text import Text
 
     shown: list[tuple[int, Column]] = [(i, column) for i, column in enumerate(table.columns) if column.head]
+    dropped: list[str] = []
+    while len(shown) > FEWEST_COLUMNS and _least_width(shown, rows) > console.width:
+        dropped.append(shown.pop()[1].head)
     drawn = RichTable(
         box=None, pad_edge=False, padding=(0, 2, 0, 0), title=Text(table.caption, "bold"), title_justify="left"
     )
@@ -73,6 +83,8 @@ def _print(console: Console, table: Table, rows: tuple[tuple[Cell, ...], ...]) -
         drawn.add_row(*(Text(row[i].text) for i, _ in shown))
     console.print()
     console.print(drawn)
+    if dropped:
+        click.echo(f"(on a wider terminal, with --json or --out also: {', '.join(reversed(dropped))})")
     if len(rows) > MOST_ROWS:
         click.echo(f"… and {len(rows) - MOST_ROWS} more: --out or --json gives all")
     if table.note:

@@ -80,26 +80,28 @@ def _test(
 
 
 def pairs_table(found: Comparison, value: str, places: int) -> Table:
-    level = f"{100 * found.confidence:g} %"
     columns = (
         Column("a"), Column("b"), Column("", "pair", False), Column(f"difference_{value}", "difference"),
-        Column(f"tukey_low_{value}"), Column(f"tukey_high_{value}"), Column("", f"Tukey HSD, {level}"), Column("tukey_p", "p"),
-        Column("stars", "stars", False), Column(f"games_howell_low_{value}"), Column(f"games_howell_high_{value}"),
-        Column("", f"Games–Howell, {level}"), Column("games_howell_p", "p"), Column("hedges_g", "Hedges' g"),
-        Column("hedges_g_low"), Column("hedges_g_high"), Column("", level), Column("note"),
+        Column(f"tukey_low_{value}"), Column(f"tukey_high_{value}"), Column("", "Tukey HSD"), Column("tukey_p"), Column("stars"),
+        Column("", "p", False), Column(f"games_howell_low_{value}"), Column(f"games_howell_high_{value}"),
+        Column("", "Games–Howell"), Column("games_howell_p", "p"), Column("hedges_g", "Hedges' g"),
+        Column("hedges_g_low"), Column("hedges_g_high"), Column("", "interval"), Column("note"),
     )  # fmt: skip
     rows = tuple(_pair(one, other, places) for one, other in zip(found.tukey, found.games_howell))
-    return Table("pairs", "Pairs", columns, rows, f"Stars of Tukey's p, as the paper defines them: {STARS_LEGEND}.")
+    caption = f"Pairs, with {100 * found.confidence:g} % intervals"
+    return Table("pairs", caption, columns, rows, f"Stars of Tukey's p, as the paper defines them: {STARS_LEGEND}.")
 
 
 def _pair(one: Pair, other: Pair, places: int) -> tuple[Cell, ...]:
     reasons = [reason for reason in (one.reason, other.reason) if reason]
+    marks = stars(one.p)
     tests = (("Tukey", one), ("Games–Howell", other))
     floored = [f"{name}: p < {test.p_below:.0e}, its digits are noise" for name, test in tests if test.p_below]
     note = "; ".join(dict.fromkeys([*reasons, *floored]))
     return (
         words(one.a), words(one.b), Cell(None, f"{cut(one.b, 24)} − {cut(one.a, 24)}"), number(one.difference, places),
-        number(one.low, places), number(one.high, places), _span(one.low, one.high, places), _p(one.p), words(stars(one.p)),
+        number(one.low, places), number(one.high, places), _span(one.low, one.high, places), _p(one.p), words(marks),
+        Cell(None, f"{_p(one.p).text} {marks}".strip()),
         number(other.low, places), number(other.high, places), _span(other.low, other.high, places), _p(other.p),
         digits(one.g), digits(one.g_low), digits(one.g_high), _digits_span(one.g_low, one.g_high), words(note),
     )  # fmt: skip
@@ -171,10 +173,10 @@ def power_table(power: Power, value: str, places: int) -> Table:
     """What the present scatter lets one see."""
     wanted = power.difference
     columns = [Column("test", "test", False)]
-    columns += [Column(f"smallest_{100 * share:.0f}_{value}", f"seen with {100 * share:.0f} %") for share in WANTED]
+    columns += [Column(f"smallest_{100 * share:.0f}_{value}", f"seen, {100 * share:.0f} %") for share in WANTED]
     if wanted is not None:
         columns += [Column(f"difference_{value}"), Column("power", f"power for {wanted:g}")]
-        columns += [Column(f"samples_{100 * share:.0f}", f"samples for {100 * share:.0f} %") for share in WANTED]
+        columns += [Column(f"samples_{100 * share:.0f}", f"n for {100 * share:.0f} %") for share in WANTED]
     rows = []
     for name, test in (("F test", power.anova), ("one pair, Tukey HSD", power.pair)):
         row = [words(name), *(number(value, places) for value in test.smallest)]
@@ -183,7 +185,7 @@ def power_table(power: Power, value: str, places: int) -> Table:
         rows.append(tuple(row))
     note = (
         f"With {power.n:.3g} samples a group that scatter by {number(power.sd, places + 1).text}, at {power.alpha:.2g}. F test: two groups "
-        "differ by so much and all others lie midway, the least that it can see. Samples: in each group."
+        "differ by so much and all others lie midway, the least that it can see. n: samples in each group."
     )
     return Table("power", "The smallest difference that such a comparison sees", tuple(columns), tuple(rows), note)
 
