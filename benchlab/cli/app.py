@@ -36,6 +36,8 @@ def cli(debug: bool) -> None:
 
     See: `benchlab analyze VIDEO` finds the markers on a bending actuator and writes its angle against time.
 
+    Measure: `benchlab force FILE` reads exports of testing machines, and finds blocked force in them.
+
     Compare: `benchlab report STUDY` and, of any table, `benchlab stats TABLE.csv`: do designs differ, how well do samples repeat?
 
     Predict: `benchlab simulate --tw-mm 3 --slw-mm 10` simulates a fabric-shelled actuator: angle, volume, blocked force;
