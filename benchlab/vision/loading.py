@@ -137,7 +137,8 @@ def _last_lowest(pressure: FloatArray, first: int, stop: int) -> int:
 
 
 def _hold(wanted: float, tolerance: float, pressure: FloatArray, cycle: Cycle) -> IntArray | None:
-    """Frames of the longest stretch within the tolerance of the wanted pressure that does not drift through it."""
+    """Frames of the longest stretch within the tolerance of the wanted pressure that does not drift through it, from the first to the
+    last that comes within half the tolerance of its median: those before still rise, those after fall."""
     part = pressure[cycle.start : cycle.stop]
     gone = np.flatnonzero(part > max(OVERSHOOT * wanted, wanted + 2 * tolerance))
     part = part[: gone[0]] if len(gone) else part
@@ -147,7 +148,8 @@ def _hold(wanted: float, tolerance: float, pressure: FloatArray, cycle: Cycle) -
         third = max(1, (stop - first) // 3)
         drift = np.median(part[stop - third : stop]) - np.median(part[first : first + third])
         if stop - first >= HOLD_FRAMES and abs(drift) <= tolerance:
-            return np.arange(first, stop) + cycle.start
+            held = np.flatnonzero(part[first:stop] >= np.median(part[first:stop]) - tolerance / 2)
+            return np.arange(first + held[0], first + held[-1] + 1) + cycle.start
     return None
 
 

@@ -138,3 +138,14 @@ def test_the_curve_meets_the_response_and_ends_with_the_value() -> None:
     late_curve = rising_curve(grid, TOLERANCE, late, find_cycles(late.pressure_MPa, TARGET))
     started = late.pressure_MPa[0] - TOLERANCE
     assert np.isnan(late_curve[grid < started]).all() and np.isfinite(late_curve[grid > started]).all()
+
+
+def test_the_last_frames_of_a_ramp_are_not_of_its_hold() -> None:
+    pressure = np.concatenate([np.arange(0, 0.35, 0.0023), np.full(8, 0.35), np.arange(0.3485, 0, -0.0023)])
+    angle = 100 * pressure
+    trace = Trace(pressure, angle, np.zeros_like(angle), np.ones(len(angle), bool))
+    (cycle,) = find_cycles(pressure, 0.35)
+    assert np.count_nonzero(np.abs(pressure - 0.35) <= 0.0035) == 11
+    found = angle_at(0.35, 0.0035, trace, cycle)
+    assert (found.method, len(found.frames)) == ("held", 10)  # one at 0.3496, one at 0.3485; the one at 0.3473 is not
+    assert found.angle == pytest.approx(34.9810)
