@@ -26,8 +26,8 @@ MIN_BYTES = 16 * HEAD
 """Smaller files are left to the strict reader."""
 
 _CHUNK = 1 << 20
-_SAMPLE = 200
-"""Bytes that are proven at a time; rows by which the decimal sign is found."""
+_HEAD_LINES, _SAMPLE = 300, 100
+"""Bytes that are proven at a time; lines by which the table is found, and rows by which the decimal sign is."""
 
 _NEWLINE, _RETURN, _QUOTE, _NINE, _ZERO = b'\n\r"90'
 _EXPONENTS = b"eE"
@@ -58,7 +58,7 @@ def read_plain(text: ExportText, stated: str | None = None) -> PlainTable | None
     if len(data) < MIN_BYTES or data.count(b"\r", 0, HEAD) != data.count(b"\r\n", 0, HEAD):
         return None
     try:
-        rows, unpaired = split_lines(text.path, head_lines(data)[:-1], text.separator)
+        rows, unpaired = split_lines(text.path, head_lines(data)[:-1][:_HEAD_LINES], text.separator)
         layout = find_layout(text.path, rows, unpaired, is_whole=True)
         span = layout.spans[-1]
         if len(layout.spans) > 1 or span.last < len(rows):
@@ -123,9 +123,9 @@ def _columns(text: ExportText, start: int, end: int, header: int, decimal: str, 
     if any(part.exponents for part in parts) and not np.isfinite(values).all():
         raise NotPlainError
     if all_marked:
-        return tuple(Column(column, None) for column in values.T)
+        return tuple(Column(column, None, complete=True) for column in values.T)
     decimals = np.concatenate([part.decimals for part in parts if part.decimals is not None])
-    return tuple(Column(column, counts) for column, counts in zip(values.T, decimals.T))
+    return tuple(Column(column, counts, complete=True) for column, counts in zip(values.T, decimals.T))
 
 
 def _parsed(text: ExportText, start: int, end: int, header: int, decimal: str) -> FloatArray:

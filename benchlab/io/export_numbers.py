@@ -53,6 +53,8 @@ class Column:
     values: FloatArray
     decimals: NDArray[np.int16] | None
     unreadable: tuple[tuple[int, str], ...] = ()
+    complete: bool = False
+    """Whether it is known that there is a number in every row."""
 
 
 def is_number(cell: str) -> bool:

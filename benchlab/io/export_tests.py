@@ -89,7 +89,7 @@ def _values(table: ExportTable, columns: Sequence[Chosen], warnings: list[str]) 
 
 def _check_cells(table: ExportTable, chosen: Chosen, column: Column, warnings: list[str]) -> None:
     """Counts cells without a number. Raises InputError for more of them than MAX_UNREADABLE."""
-    if not np.isnan(column.values).any():
+    if column.complete or not np.isnan(column.values).any():
         return
     missing = np.flatnonzero(np.isnan(column.values))
     cells = dict(column.unreadable)
