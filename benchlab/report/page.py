@@ -11,7 +11,7 @@ from benchlab.report.svg import inline_svg
 
 # Where a line must not be broken: within `p = 0.04`, `3 mm` and `2e-5`.
 _EXPONENT = re.compile(r"(?<=\de-)(?=\d)")
-_BINDS = re.compile(r"(?<=\bp) (?=[<=])|(?<=\bp [<=]) |(?<=\d) (?=mm|MPa|%)")
+_BINDS = re.compile(r"(?<=\bp) (?=[<=])|(?<=\bp [<=]) |(?<=\d) (?=mm|MPa|%)| (?=\(°\))")
 
 
 _CONTROL = re.compile("[\\x00-\\x08\\x0b-\\x1f\\x7f-\\x9f]")

@@ -11,7 +11,7 @@ from benchlab.io.published import BLOCKED_FORCE
 from benchlab.io.study_values import DesignValues
 from benchlab.report.document import NONE, Block, Cell, Column, Pictures, Section, Table, Words, cut
 from benchlab.report.force_figure import draw_force_panel, linearity_words, places_of
-from benchlab.report.rounding import count, digits, number, words
+from benchlab.report.rounding import count, decimals_of, digits, number, words
 from benchlab.report.study.pictures import file_names
 from benchlab.report.study.report import StudyReport, probability, span_text
 from benchlab.report.svg import panel_of
@@ -133,12 +133,12 @@ def _lines_table(known: list[tuple[DesignValues, BlockedForce]]) -> Table:
         Column("", "interval"), Column("intercept_N", "at 0 MPa (N)"), Column("intercept_low_N"), Column("intercept_high_N"),
         Column("", "interval"), Column("through_origin_N_per_MPa", "slope through 0 (N/MPa)"), Column("r_squared", "R²"),
         Column("residual_sd_N", "residual SD (N)"), Column("lack_of_fit_F", "lack of fit F"), Column("lack_of_fit_p", "p"),
-        Column("bow_N", "bow (N)"), Column("bow_p", "p of bow"),
+        Column("bow_N"), Column("bow_p"),
     )  # fmt: skip
     rows = tuple(_line_row(design, force) for design, force in known if force.line is not None)
     note = (
         "Mean of the actuators’ own least-squares lines; intervals are t intervals over actuators. Residual SD: about their own lines. "
-        "Lack of fit: deviations of the mean from a line against those of single actuators. Bow: height of the quadratic part."
+        "Lack of fit: deviations of the mean from a line against those of single actuators."
     )
     return Table("blocked_force_lines", "Lines of force against pressure.", columns, rows, note)
 
@@ -147,7 +147,7 @@ def _line_row(design: DesignValues, force: BlockedForce) -> tuple[Cell, ...]:
     line = force.line
     assert line is not None
     slope, start, straight, places = line.slope_N_per_MPa, line.intercept_N, line.linearity, _places(force)
-    steep = places_of(slope.value, (slope.high - slope.low) / 4)
+    steep = decimals_of((slope.high - slope.low) / 2) if math.isfinite(slope.low) else 1
     ends = [
         span_text(one.low, one.high, decimals) if math.isfinite(one.low) else NONE
         for one, decimals in ((slope, steep), (start, places))
@@ -175,7 +175,7 @@ def _lever(design: DesignValues, force: BlockedForce) -> str:
             else f"{text}; that of a round tube held straight, p·π·R³, would be {moment:.0f} N·mm."
         )
     text = (
-        "the study does not state it (`lever_arm_mm`), and the paper does not describe its fixture. These forces compare only with those "
+        "the study does not state it (lever_arm_mm), and the paper does not describe its fixture. These forces compare only with those "
         "of the same fixture."
     )
     if moment is None or not force_N > 0:

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from decimal import Decimal
 
 from benchlab.actuator import ShellDesign
-from benchlab.errors import BenchlabError
 from benchlab.io.published import PublishedAngle
 from benchlab.io.study_values import DesignValues
 from benchlab.report.document import NONE, Block, Cell, Column, Section, Table, Words, cut
 from benchlab.report.rounding import count, number, words
 from benchlab.report.study.report import PublishedSet, StudyReport, mean_of, probability, sd_of, span_text
-from benchlab.stats.comparison import compare_summaries
-from benchlab.stats.pairs import Pair
+from benchlab.stats.groups import groups_of_summaries
+from benchlab.stats.pairs import Pair, games_howell
 from benchlab.stats.wording import STARS_LEGEND, p_equals, stars
 
 
@@ -153,13 +153,12 @@ def _means_row(report: StudyReport, design: DesignValues, paper: PublishedAngle,
 
 
 def _welch(here: tuple[int, float, float], paper: tuple[int, float, float], confidence: float) -> Pair | None:
-    """Here less paper: with two groups, Games and Howell's test is Welch's t. None where it is not defined."""
+    """Here less paper, each (n, mean, SD): with two groups, Games and Howell's test is Welch's t. None for a lone sample."""
     (n, mean, sd), (own_n, own_mean, own_sd) = paper, here
-    try:
-        found = compare_summaries(["paper", "here"], [n, own_n], [mean, own_mean], [sd, own_sd], confidence)
-    except BenchlabError:
+    if min(n, own_n) < 2:
         return None
-    return found.games_howell[0]
+    means = [Decimal(repr(mean)), Decimal(repr(own_mean))]
+    return games_howell(groups_of_summaries(["paper", "here"], [n, own_n], means, [sd, own_sd]), confidence)[0]
 
 
 def _mean_and_sd(mean: float | None, sd: float | None, places: int) -> Cell:
