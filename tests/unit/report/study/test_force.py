@@ -99,7 +99,7 @@ def test_the_lever_arm_is_said_to_be_missing_or_stated() -> None:
     one = force()
     moment = 0.35 * math.pi * (40 / math.pi / 2) ** 3
     text = words_of(section(one))
-    assert "the study does not state it (`lever_arm_mm`)" in text
+    assert "the study does not state it (lever_arm_mm)" in text
     assert f"p·π·R³ = {moment:.0f} N·mm at 0.35 MPa" in text and moment == pytest.approx(284, abs=1)
     assert f"a lever arm of {moment / one.over_actuators_N[-1]:.1f} mm" in text
     told = words_of(section(force(lever_arm_mm=7.5)))
