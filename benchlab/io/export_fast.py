@@ -135,7 +135,7 @@ def _parsed(text: ExportText, start: int, end: int, header: int, decimal: str) -
     exact: dict[str, Any] = {}
     if int(pandas.__version__.split(".")[0]) < 3:
         exact = {"float_precision": "round_trip"}
-    as_stored = text.content.encoding in ("ascii", "utf-8") and end == len(text.data)
+    as_stored = text.content.encoding in ("ascii", "utf-8", "utf-8-sig") and end == len(text.data)
     source = {"filepath_or_buffer": text.path, "skiprows": header} if as_stored else {}
     try:
         frame = pandas.read_csv(
