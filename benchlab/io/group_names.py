@@ -23,17 +23,21 @@ class NameReader:
             raise UsageError(f"{option} names column {columns[0]!r} twice", hint="name it once")
         self.table, self.columns = table, tuple(columns)
         self._places = [table.header.index(column) for column in columns]
+        self._parts: dict[str, list[str]] = {}
         self._written: dict[str, str] = {}
         self._blanks: dict[str, None] = {}
 
     def read(self, cells: list[str], line: int) -> str:
-        """The name: the cell of the one column, or `tw_mm 3, slw_mm 10` for two. InputError for an empty cell."""
+        """The name: the cell of the one column, or `3 / 10` for two. InputError for an empty cell, or where two names would read alike."""
         texts = [unguarded(cells[place].strip()) for place in self._places]
         if "" in texts:
             column = self.columns[texts.index("")]
             where = f"line {line}, column {column}"
             raise InputError("empty cell where a name should stand", file=self.table.path, where=where)
-        name = texts[0] if len(texts) == 1 else ", ".join(map(" ".join, zip(self.columns, texts)))
+        name = " / ".join(texts)
+        if self._parts.setdefault(name, texts) != texts:
+            what = f"two groups would both be called {name[:40]!r}"
+            raise InputError(what, file=self.table.path, where=f"line {line}", hint="write names without strokes")
         written = "\0".join(cells[place] for place in self._places)
         if self._written.setdefault(name, written) != written:
             self._blanks[name] = None

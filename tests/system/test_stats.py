@@ -71,7 +71,7 @@ def test_the_papers_table(benchlab) -> None:
     assert anova["p"] == pytest.approx(5.6e-20, rel=0.02)
     assert (round(welch["F"], 1), round(welch["df"][1], 2)) == (439.5, 9.75)
     assert round(done.json["repeatability"]["s_r"], 2) == 2.96 and round(done.json["repeatability"]["r"], 1) == 8.3
-    assert done.json["groups"][0]["name"] == "tw_mm 3, slw_mm 5"
+    assert done.json["groups"][0]["name"] == "3 / 5"
 
 
 def test_the_papers_slw_set_on_the_terminal(tmp_path: Path, benchlab) -> None:

@@ -86,6 +86,12 @@ def test_usage(
     assert [path.name for path in table.parent.iterdir()] == ["a.csv"]
 
 
+def test_two_columns_that_name_two_groups_alike(tmp_path: Path, benchlab) -> None:
+    path = write(tmp_path / "a.csv", "x;y;v\na / b;c;1\na / b;c;2\na;b / c;3\na;b / c;5\n")
+    done = benchlab("stats", path, "--value", "v", "--group", "x", "--group", "y")
+    assert done.code == 3 and "line 4: two groups would both be called 'a / b / c'" in done.err
+
+
 def test_two_columns_of_one_name(tmp_path: Path, benchlab) -> None:
     path = write(tmp_path / "a.csv", GOOD.replace("sample", "angle_deg"))
     assert "2 columns are named 'angle_deg'; rename one" in benchlab("stats", path, *COLUMNS).err
