@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from benchlab.errors import InputError, UsageError
+from benchlab.force.clocks import lag_s
 from benchlab.force.curve import ActuatorCycles
 from benchlab.force.levels import TOLERANCE, level_of, nearest_steps, stated_steps
 from benchlab.force.loading import Loading, find_loadings
@@ -20,6 +21,9 @@ from benchlab.units import FloatArray
 
 RESTING = 0.05
 """Share of the largest pressure that a rest may be under."""
+
+LATE = 0.3
+"""Share of a cycle's loaded time that the force may come before or behind the pressure."""
 
 NEGATE = "turn it round with --negate, if pressing is negative in this export"
 
@@ -90,6 +94,8 @@ def find_cycles(
     warnings += _doubts(record)
     if how:
         warnings += _doubts_of_cycles(record, pressure)
+    if pressure is not None and time is not None and record.contact:
+        warnings += _doubt_of_clocks(record, time, force, pressure)
     cycles = _counted(actuator, record, levels)
     if settings.steps_MPa and not record.contact and pressure is None:
         cycles = _untouched(actuator, settings)
@@ -219,6 +225,14 @@ def _doubts_of_cycles(record: ForceRecord, pressure: FloatArray | None) -> Itera
     if most > RESTING * largest:
         share = f"{most / largest:.0%} of the largest"
         yield f"the pressure is still {most:.3g} MPa in a rest between cycles ({share}): is the force unloaded where its zero is taken?"
+
+
+def _doubt_of_clocks(record: ForceRecord, time: FloatArray, force: FloatArray, pressure: FloatArray) -> Iterator[str]:
+    """A doubt where the force comes well before or behind the pressure."""
+    loaded = float(np.nanmedian([time[c.fall] - time[c.rise] for c in record.loadings]))
+    if abs(late := lag_s(time, force, pressure)) > LATE * loaded:
+        where = "behind" if late > 0 else "before"
+        yield f"the force comes {abs(late):.3g} s {where} the pressure, which is on for {loaded:.3g} s: do their clocks agree?"
 
 
 def _cycles(numbers: list[int]) -> str:

@@ -139,6 +139,16 @@ def test_a_column_of_pressure_or_a_log_gives_the_same_as_stated_steps(tmp_path: 
     assert found[0].json["blocked_force"]["line"]["linearity"] is None
 
 
+def test_a_log_on_another_clock_is_doubted(tmp_path: Path, benchlab) -> None:
+    drawn = trace()
+    force = write_force(tmp_path / "force.csv", drawn)
+    for shift_s, doubted in ((0.0, False), (0.2, False), (-1.2, True), (2.2, True), (9.0, True)):
+        log = write(tmp_path / "log.csv", {"time_s": drawn.time_s - shift_s, "pressure_MPa": drawn.pressure_MPa})
+        done = benchlab("force", force, "--pressure", log, "--out", tmp_path / "out", "--overwrite", "--json")
+        assert done.code == 0, done.err
+        assert any("do their clocks agree?" in text for text in done.json["files"][0]["warnings"]) == doubted
+
+
 def test_each_file_may_have_its_own_log_and_name(tmp_path: Path, benchlab) -> None:
     files, logs = [], []
     for name, levels in (("a", LEVELS), ("b", LEVELS[::-1])):
