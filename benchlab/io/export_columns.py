@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from benchlab.errors import UsageError, printable
+from benchlab.errors import InputError, UsageError, printable
 from benchlab.io.export_words import COLUMN_WORDS
 from benchlab.units import UNITS, known_unit, parse_column
 
@@ -90,7 +90,7 @@ def find_columns(
 ) -> tuple[Chosen, ...]:
     """The columns of a header. empty: columns without a cell, which are passed over.
 
-    Raises UsageError where two could be the same quantity, where there is no force, or no unit of one.
+    Raises UsageError where two could be the same quantity, where there is no force, or no unit of one; InputError for two units.
     """
     where = f"line {line}" if line else None
     named: dict[str, list[Chosen]] = {}
@@ -98,6 +98,7 @@ def find_columns(
     for index, (name, unit) in enumerate(map(split_name, names, units)):
         if (found := None if empty[index] else _meaning(name, unit)) is not None:
             quantity, known, by_name = found
+            _check_one_unit(path, where, name, unit)
             column = Chosen(index, quantity, known, f"{name} ({unit})" if unit else name)
             (named if by_name else measured).setdefault(quantity, []).append(column)
     if "force" not in named | measured:
@@ -114,6 +115,15 @@ def find_columns(
             raise UsageError(what, file=path, where=where, hint=REMEDY)
         chosen.append(_with_unit(path, where, columns[0], force_unit))
     return tuple(sorted(chosen, key=lambda c: list(COLUMN_WORDS).index(c.quantity)))
+
+
+def _check_one_unit(path: Path, where: str | None, name: str, unit: str) -> None:
+    """Raises InputError for a name with another unit in brackets than that of the column."""
+    bare, written = parse_column(name) if name.endswith((")", "]")) else (name, None)
+    inside, outside = known_unit(written or ""), known_unit(unit)
+    if inside and outside and inside != outside:
+        what = f"column {printable(bare)!r} is in {inside[1]} by its name and in {outside[1]} by the row of units"
+        raise InputError(what, file=path, where=where, hint="remove one of them, or name the columns with --columns")
 
 
 def _meaning(name: str, unit: str) -> tuple[str, str, bool] | None:
