@@ -52,6 +52,7 @@ def test_large_numbers(paper: StudyReport) -> None:
     tiles = verdict_section(paper).blocks[0]
     assert isinstance(tiles, Tiles)
     assert [tile.value for tile in tiles.row] == ["56.7–125.7°", "± 3.0°", "9 of 10", "5.2°"]
+    assert tiles.row[1].note == "two samples differ by less than 8.3° in 95 % of cases"
     assert tiles.row[0] == Tile("56.7–125.7°", "mean angle at 0.35 MPa", "tw15_slw10 to tw3_slw10")
 
 
