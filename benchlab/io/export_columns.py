@@ -101,8 +101,7 @@ def find_columns(
             _check_one_unit(path, where, name, unit)
             column = Chosen(index, quantity, known, f"{name} ({unit})" if unit else name)
             (named if by_name else measured).setdefault(quantity, []).append(column)
-    if "force" not in named | measured:
-        raise UsageError(_no_force(names, units), file=path, where=where, hint=REMEDY)
+    _check_there(path, where, {*named, *measured}, names, units, empty)
     chosen = []
     for quantity in sorted(named | measured, key="force".__ne__):
         columns = named.get(quantity) or measured[quantity]
@@ -141,14 +140,20 @@ def _meaning(name: str, unit: str) -> tuple[str, str, bool] | None:
     return (quantity, known[1], True) if known and known[0] == _PHYSICAL[quantity] else None
 
 
-def _no_force(names: Sequence[str], units: Sequence[str]) -> str:
-    """Why no column holds a force."""
-    parsed = [split_name(n, u) for n, u in zip(names, units)]
-    for name, unit in parsed:
-        if quantity_named(name) == "force":
-            return f"unit {printable(unit)!r} of {printable(name)!r} is not one of force ({', '.join(UNITS['force'])})"
-    seen = ", ".join(repr(printable(name)) for name, unit in parsed if name or unit)
-    return f"no column of force among {seen or 'no names'}"
+def _check_there(
+    path: Path, where: str | None, found: set[str], names: Sequence[str], units: Sequence[str], empty: Sequence[bool]
+) -> None:
+    """Raises UsageError where there is no force, or where a force or a time was not found because of its unit."""
+    parsed = [split_name(*pair) for pair, is_empty in zip(zip(names, units), empty) if not is_empty]
+    for quantity in ("force", "time"):
+        odd = next(((name, unit) for name, unit in parsed if quantity_named(name) == quantity), None)
+        if quantity not in found and odd:
+            name, unit = map(printable, odd)
+            what = f"unit {unit!r} of {name!r} is not one of {quantity} ({', '.join(UNITS[quantity])})"
+            raise UsageError(what, file=path, where=where, hint=REMEDY)
+    if "force" not in found:
+        seen = ", ".join(repr(printable(name)) for name, unit in parsed if name or unit) or "no names"
+        raise UsageError(f"no column of force among {seen}", file=path, where=where, hint=REMEDY)
 
 
 def columns_by_place(path: Path, words: str, width: int, empty: Sequence[bool]) -> tuple[Chosen, ...]:

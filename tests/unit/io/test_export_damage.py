@@ -59,6 +59,7 @@ REFUSED = {
     "too many failed readings (74)": (HEAD + table(**DASHES), 3, "5 of 40 cells .* hold no number.*at most 10 %"),
     "the same name twice (75)": (DUPLICATE, 2, r"line 1: 2 columns that could be the force: 'Force \(N\)' and .*--columns"),
     "two columns of force (75)": ("A (N),B (N)\n1.5,2.5\n1.6,2.6\n", 2, r"2 columns that could be the force: 'A \(N\)' and 'B \(N\)'"),
+    "unknown unit of time": ("Time (foo),Load (N)\n" + "0.1,1.5\n" * 3, 2, "unit 'foo' of 'Time' is not one of time .s, sec, ms"),
     "two units of a column": (
         "Time (s),Load (kN)\n(s),(N)\n0.1,1.5\n0.2,1.6\n", 3,
         "line 1: column 'Load' is in kN by its name and in N by the row of units; remove one",
