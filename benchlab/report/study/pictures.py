@@ -39,28 +39,35 @@ _STATISTICS = {
 def bars_blocks(report: StudyReport) -> Iterator[Block]:
     """Bars of each set, with brackets where the set has been compared."""
     label = f"bending angle θ at {report.values.pressure_MPa:g} MPa (°)"
-    panels, many = [], False
+    panels, sizes = [], []
     bar_in = 1.0 if len(report.compared) == 1 else 0.64
     for one, name in _named(report.compared):
         bars = [bar for design in report.values.of(one.chosen) if (bar := bar_of(design)) is not None]
         if bars:
-            many = many or len(bars) > MOST_BRACKETED
-            figure = draw_bars(
-                bars, brackets_of(one.found, [bar.name for bar in bars]), label, one.chosen.title, bar_in
-            )
+            sizes.append(len(bars))
+            brackets = brackets_of(one.found, [bar.name for bar in bars])
+            figure = draw_bars(bars, brackets, label, one.chosen.title, bar_in)
             panels.append(panel_of(figure, f"bars_{name}", f"Bars of mean angle: {name_of(one)}"))
-    if not panels:
+    if panels:
+        yield Pictures(tuple(panels), _about_bars(report, sizes))
+    else:
         yield Words("No sample has a value: there is nothing to draw.")
-        return
-    designs, found = report.values.designs, found_sets(report)
-    more = " Whiskers: ± 1 standard deviation between samples." * any(sd_of(design) is not None for design in designs)
-    more += " Diamonds: simulated." * any(simulated_of(design) is not None for design in designs)
-    more += f" Brackets: Tukey’s HSD within the set, {STARS_LEGEND}, else p." * bool(found)
-    rows = f" Sets of more than {MOST_BRACKETED} designs lie as rows without brackets, the first {MOST_ROWS} designs of each."
-    yield Pictures(
-        tuple(panels),
-        f"Bars: mean bending angle of the samples. Points: samples, each the mean of its cycles (n: Table 1).{more}{rows * many}",
-    )
+
+
+def _about_bars(report: StudyReport, sizes: Sequence[int]) -> str:
+    """What the bars, or the rows of sets with more designs, show; only what is there."""
+    designs, upright = report.values.designs, min(sizes) <= MOST_BRACKETED
+    told = [
+        f"{'Bars' if upright else 'Squares'}: mean bending angle of the samples.",
+        "Points: samples, each the mean of its cycles (n: Table 1).",
+        "Whiskers: ± 1 standard deviation between samples." * any(sd_of(design) is not None for design in designs),
+        "Diamonds: simulated." * any(simulated_of(design) is not None for design in designs),
+        f"Brackets: Tukey’s HSD within the set, {STARS_LEGEND}, else p." * (upright and bool(found_sets(report))),
+        f"Sets of more than {MOST_BRACKETED} designs lie as rows without brackets."
+        * (upright and max(sizes) > MOST_BRACKETED),
+        f"The first {MOST_ROWS} designs are drawn." * (max(sizes) > MOST_ROWS),
+    ]
+    return " ".join(filter(None, told))
 
 
 def bar_of(design: DesignValues) -> Bar | None:
@@ -127,10 +134,11 @@ def bands_blocks(report: StudyReport) -> Iterator[Block]:
     off = f" The first {MOST_BANDS} of {len(bands)} designs are drawn." if len(bands) > MOST_BANDS else ""
     without = len(report.values.designs) - len(bands)
     off += f" {without} design{'s have' if without > 1 else ' has'} no such curve." if without else ""
+    dashed = " Dashed: simulated." if any(band.simulated is not None for band in drawn) else ""
     yield Pictures(
         tuple(panels),
         "Bending angle against pressure as it rises. Line and band: mean of the samples ± 1 standard deviation between them. Grey: "
-        f"single samples, each the mean of its cycles. Dashed: simulated, where there is a curve.{off}",
+        f"single samples, each the mean of its cycles.{dashed}{off}",
     )
 
 

@@ -10,11 +10,11 @@ import pytest
 from scipy import stats
 
 from benchlab.io.study_values import StudySet
-from benchlab.report.document import Table, Tile, Tiles
+from benchlab.report.document import Pictures, Table, Tile, Tiles
 from benchlab.report.study import differences
 from benchlab.report.study.differences import pairs_table, power_blocks
 from benchlab.report.study.document import study_document
-from benchlab.report.study.pictures import bar_of, brackets_of, file_names
+from benchlab.report.study.pictures import bar_of, bars_blocks, brackets_of, file_names
 from benchlab.report.study.report import StudyReport, interval_of, pooled_sd_of
 from benchlab.report.study.tables import designs_table, samples_table
 from benchlab.report.study.verdict import verdict_section, verdict_words
@@ -180,3 +180,22 @@ def test_sets_keep_their_order_and_designs() -> None:
     report = studies.report(studies.values(studies.paper_designs(), sets))
     assert [one.chosen.title for one in report.compared] == ["Backwards", "All designs"]
     assert [row[1].value for row in pairs_table(report).rows if row[0].value == "Backwards"] == ["tw15_slw10"]
+
+
+@pytest.mark.parametrize(
+    ("count", "simulated", "there", "absent"),
+    [
+        (3, 55.0, ("Bars:", "Whiskers", "Diamonds", "Brackets"), ("rows", "first")),
+        (3, None, ("Bars:", "Brackets"), ("Diamonds",)),
+        (8, None, ("Squares:", "Whiskers"), ("Brackets", "Bars", "first")),
+        (41, None, ("Squares:", "The first 40 designs are drawn."), ("Brackets",)),
+        (1, None, ("Bars:", "Whiskers"), ("Brackets",)),
+    ],
+)
+def test_the_caption_speaks_of_what_is_drawn(
+    count: int, simulated: float | None, there: tuple[str, ...], absent: tuple[str, ...]
+) -> None:
+    designs = tuple(studies.design(f"d{i}", 50 + i, 2, 3, 1, simulated_deg=simulated) for i in range(count))
+    (pictures,) = bars_blocks(studies.report(studies.values(designs)))
+    assert isinstance(pictures, Pictures)
+    assert all(word in pictures.caption for word in there) and not any(word in pictures.caption for word in absent)
