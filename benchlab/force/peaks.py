@@ -19,6 +19,9 @@ from benchlab.units import FloatArray
 RESOLVED_SHARE = 20
 """A peak is the top of a local parabola over this fraction of its loading."""
 
+WILD = 0.02
+"""A reading that stands alone by more than this share of its loading's height (and than noise does) is no peak."""
+
 NO_CONTACT = "no contact seen"
 
 
@@ -141,8 +144,9 @@ def _peak(
     if window >= 5:
         around = force[max(0, cycle.rise - window) : cycle.fall + 1 + window]
         left = cycle.rise - max(0, cycle.rise - window)
-        smooth = savgol_filter(median_filter(around, 3, mode="nearest"), window, 2)[left : left + len(loaded)]
-        smooth = np.minimum(smooth, loaded.max())  # a parabola swings over at a corner
+        clean = _without_wild(around, zero.noise_N)
+        smooth = savgol_filter(clean, window, 2)[left : left + len(loaded)]
+        smooth = np.minimum(smooth, clean.max())  # a parabola swings over at a corner
         gain = float(np.square(savgol_coeffs(window, 2)).sum())
     top = int(np.argmax(smooth))
     level, sd = zero.at(cycle.rise + top)
@@ -153,6 +157,12 @@ def _peak(
         number, cycle.rise + top, math.nan if time is None else float(time[cycle.rise + top]), float(whole.max()), level,
         float(smooth[top]) - level, math.sqrt(gain * zero.noise_N**2 + sd**2), clipped, bool(cycle.cut), "; ".join(filter(None, why)),
     )  # fmt: skip
+
+
+def _without_wild(force: FloatArray, noise_N: float) -> FloatArray:
+    """Readings (n,) of which one that stands alone, far from both neighbours, is replaced by the median of the three."""
+    middle = median_filter(force, 3, mode="nearest")
+    return np.where(np.abs(force - middle) > max(6 * noise_N, WILD * np.ptp(middle)), middle, force)
 
 
 def _with_gaps(peak: ForcePeak, cycle: Loading, known: np.ndarray) -> ForcePeak:

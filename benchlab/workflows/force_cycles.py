@@ -107,12 +107,20 @@ def _loadings(
 ) -> tuple[FloatArray | None, tuple[Loading, ...], str]:
     """(n,) pressure where it has cycles, the loadings where something but the force tells them, and what does."""
     pressure, source = _pressure(test, log)
-    if pressure is not None and (found := find_loadings(pressure)):
-        return pressure, found, source
-    if log is not None:
-        raise InputError("the pressure shows no cycle", hint="is it the log of this record, on the same clock?")
     if pressure is not None:
-        warnings.append("the pressure does not rise and fall: no cycles from it")
+        vacuum = pushes_down(pressure)
+        if not vacuum and (found := find_loadings(pressure)):
+            return pressure, found, source
+        what = (
+            f"the pressure goes below its rest, to {np.nanmin(pressure):.3g} MPa"
+            if vacuum
+            else "the pressure does not rise and fall"
+        )
+        if log is not None:
+            raise InputError(
+                what, hint="is it the log of this record, on the same clock, of an actuator under pressure?"
+            )
+        warnings.append(f"{what}: no cycles from it")
     if "cycle" in test.columns and (found := loadings_of_cycles(test.columns["cycle"], force)):
         return None, found, "the file's column of cycles"
     return None, (), "rises and falls of the force"

@@ -149,6 +149,26 @@ def test_a_log_on_another_clock_is_doubted(tmp_path: Path, benchlab) -> None:
         assert any("do their clocks agree?" in text for text in done.json["files"][0]["warnings"]) == doubted
 
 
+def test_a_vacuum_and_a_pressure_at_rest_tell_no_cycles(tmp_path: Path, benchlab) -> None:
+    drawn = trace()
+    force = write_force(tmp_path / "force.csv", drawn)
+    for pressure, words in (
+        (-drawn.pressure_MPa, "goes below its rest, to -0.3 MPa"),
+        (0 * drawn.pressure_MPa, "does not rise and fall"),
+    ):
+        columns = {"time_s": drawn.time_s, "pressure_MPa": pressure}
+        refused = benchlab(
+            "force", force, "--pressure", write(tmp_path / "log.csv", columns), "--out", tmp_path / "out"
+        )
+        if "rest, to" in words:
+            assert refused.code == 3  # below what a gauge can show
+        both = write(tmp_path / "both.csv", {**columns, "force_N": drawn.force_N})
+        done = benchlab("force", both, "--out", tmp_path / "out", "--overwrite", "--json")
+        assert done.code == 0 and done.json["blocked_force"] is None
+        assert words in done.json["files"][0]["warnings"][0]
+        assert len(done.json["files"][0]["actuators"][0]["peaks"]) == 6
+
+
 def test_each_file_may_have_its_own_log_and_name(tmp_path: Path, benchlab) -> None:
     files, logs = [], []
     for name, levels in (("a", LEVELS), ("b", LEVELS[::-1])):

@@ -101,6 +101,14 @@ def test_a_wild_reading_is_in_the_raw_peak_only() -> None:
     assert np.abs(errors(found, trace)).max() < 0.1
 
 
+def test_a_corner_is_no_peak_higher_than_its_readings() -> None:
+    force = np.repeat([0.0, 10.0, 0.0, 10.0, 0.0], 200)
+    force[650] = 1e300
+    found = peaks_of(force)
+    assert [p.peak_N for p in found.peaks] == [10.0, 10.0]
+    assert [p.raw_N for p in found.peaks] == [10.0, 1e300]
+
+
 def test_a_load_cell_at_its_limit_gives_lower_bounds() -> None:
     trace = drawn(rate_Hz=100, noise_N=0.02)
     found = peaks_of(np.minimum(trace.force_N, 10.0), trace.time_s)
