@@ -63,7 +63,13 @@ class ForceRecord:
 
     @property
     def contact(self) -> bool:
-        return bool(self.peaks) and NO_CONTACT not in self.notes[:1]
+        """Whether there are peaks of more than noise."""
+        return bool(self.peaks) and not self.untouched
+
+    @property
+    def untouched(self) -> bool:
+        """Whether the load cell was never touched; without contact a record may also be without a rest, or go down."""
+        return NO_CONTACT in self.notes[:1]
 
 
 def peaks_of(

@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 
 from benchlab.errors import InputError, UsageError
-from benchlab.force.clocks import lag_s
 from benchlab.force.curve import ActuatorCycles
 from benchlab.force.levels import TOLERANCE, level_of, nearest_steps, stated_steps
 from benchlab.force.loading import Loading, find_loadings
@@ -18,12 +17,7 @@ from benchlab.io.export_tests import MachineTest
 from benchlab.io.machine_export import ExportOptions
 from benchlab.io.pressure import PressureRecord
 from benchlab.units import FloatArray
-
-RESTING = 0.05
-"""Share of the largest pressure that a rest may be under."""
-
-LATE = 0.3
-"""Share of a cycle's loaded time that the force may come before or behind the pressure."""
+from benchlab.workflows.force_doubts import doubt_of_clocks, doubts_of, doubts_of_cycles, named_cycles
 
 NEGATE = "turn it round with --negate, if pressing is negative in this export"
 
@@ -91,13 +85,15 @@ def find_cycles(
     else:
         record = peaks_of(force, time, loadings or None)
     levels, how = _levels(record, pressure, settings, warnings)
-    warnings += _doubts(record)
+    warnings += doubts_of(record)
     if how:
-        warnings += _doubts_of_cycles(record, pressure)
+        warnings += doubts_of_cycles(record, pressure)
     if pressure is not None and time is not None and record.contact:
-        warnings += _doubt_of_clocks(record, time, force, pressure)
+        warnings += doubt_of_clocks(record, time, force, pressure)
     cycles = _counted(actuator, record, levels)
-    if settings.steps_MPa and not record.contact and pressure is None:
+    if settings.wanted and not record.peaks and not record.untouched:
+        raise InputError(record.notes[-1], hint="record from before the first loading until after the last")
+    if settings.steps_MPa and record.untouched and pressure is None:
         cycles = _untouched(actuator, settings)
     return FoundCycles(actuator, record, levels, cycles, {"cycles": source, **how}, tuple(warnings))
 
@@ -171,7 +167,7 @@ def _levels(
         found = [level_of(pressure, cycle) for cycle in record.loadings]
         levels[whole] = np.array([level.pressure_MPa for level in found])[whole]
         if passing := [n for n, level in enumerate(found, start=1) if not level.held]:
-            warnings.append(f"the pressure is not held in {_cycles(passing)}: its largest value counts")
+            warnings.append(f"the pressure is not held in {named_cycles(passing)}: its largest value counts")
         if not settings.steps_MPa:
             return levels, {"pressure": "mean of each hold"}
         tolerance = settings.tolerance_MPa or TOLERANCE * max(settings.steps_MPa)
@@ -205,44 +201,3 @@ def _where(peaks: tuple[ForcePeak, ...]) -> str:
         shown = [*shown[:4], "…", *shown[-3:]]
     cut = sum(p.cut for p in peaks)
     return f"peaks at {', '.join(shown)}" + (f"; {cut} more are cut by the record's ends" if cut else "")
-
-
-def _doubts(record: ForceRecord) -> Iterator[str]:
-    yield from record.notes[-1:]
-    if record.clipped_at_N is not None:
-        clipped = [p.number for p in record.peaks if p.lower_bound]
-        yield f"the load cell is at its limit: peaks are clipped at {record.clipped_at_N:.2f} N in {_cycles(clipped)}, and count as ≥"
-    elif missing := [p.number for p in record.peaks if p.lower_bound]:
-        yield f"readings are missing while loaded in {_cycles(missing)}: their peaks count as ≥"
-
-
-def _doubts_of_cycles(record: ForceRecord, pressure: FloatArray | None) -> Iterator[str]:
-    """What is doubtful about cycles whose pressures are known: cut ones, no rest, and rests under pressure."""
-    for peak in record.peaks:
-        if peak.cut:
-            yield f"cycle {peak.number} was left out: {peak.why}"
-    if record.baseline is None:
-        return
-    if not record.baseline.flat.any():
-        yield "the force nowhere rests unloaded: the lowest between loadings is taken as its zero"
-    if pressure is None:
-        return
-    known = np.flatnonzero(np.isfinite(pressure))
-    resting = pressure[known[np.searchsorted(known, record.baseline.place.astype(int)).clip(0, len(known) - 1)]]
-    most, largest = float(resting.max()), float(np.nanmax(pressure))
-    if most > RESTING * largest:
-        share = f"{most / largest:.0%} of the largest"
-        yield f"the pressure is still {most:.3g} MPa in a rest between cycles ({share}): is the force unloaded where its zero is taken?"
-
-
-def _doubt_of_clocks(record: ForceRecord, time: FloatArray, force: FloatArray, pressure: FloatArray) -> Iterator[str]:
-    """A doubt where the force comes well before or behind the pressure."""
-    loaded = float(np.nanmedian([time[c.fall] - time[c.rise] for c in record.loadings]))
-    if abs(late := lag_s(time, force, pressure)) > LATE * loaded:
-        where = "behind" if late > 0 else "before"
-        yield f"the force comes {abs(late):.3g} s {where} the pressure, which is on for {loaded:.3g} s: do their clocks agree?"
-
-
-def _cycles(numbers: list[int]) -> str:
-    listed = ", ".join(map(str, numbers[:6])) + (f" and {len(numbers) - 6} more" if len(numbers) > 6 else "")
-    return f"cycle{'s' * (len(numbers) != 1)} {listed}"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchlab.force.clipping import clipping_value
-from benchlab.force.loading import find_loadings
+from benchlab.force.loading import Loading, find_loadings
 from benchlab.force.peaks import NO_CONTACT, ForceRecord, loadings_of_cycles, peaks_of, pushes_down
 from benchlab.force.synthetic import CycleShape, DrawnTrace, draw_trace
 
@@ -157,8 +157,9 @@ def test_no_contact_with_known_cycles_gives_peaks_of_noise() -> None:
 
 def test_a_record_without_readings_or_without_a_rest_says_so() -> None:
     assert peaks_of(np.full(10, np.nan)).notes == ("no reading of force",)
-    found = peaks_of(np.repeat([9.0, 9.0, 8.9], 30) + np.random.default_rng(0).normal(0, 1e-6, 90))
-    assert found.baseline is None or found.peaks[0].cut
+    found = peaks_of(np.linspace(8.0, 9.0, 10), loadings=[Loading(0, 0, 9, 10)])
+    assert not found.contact and not found.untouched
+    assert found.notes == ("no unloaded rest in the record, so that its zero is not known",)
 
 
 def test_the_way_of_a_trace() -> None:
