@@ -82,7 +82,7 @@ def every_pair(count: int, label: str = "p = 0.0069") -> list[tuple[int, int, st
 @pytest.mark.parametrize("kind", NAMES)
 @pytest.mark.parametrize("count", [1, 2, 5, 6, 7, 40])
 def test_bars_are_legible(kind: str, count: int) -> None:
-    for bar_in in (0.64, 1.0):
+    for bar_in in (0.64, 1.0) if count <= MOST_BRACKETED else (0.64,):
         figure = draw_bars(
             bars(count, NAMES[kind]),
             every_pair(min(count, MOST_BRACKETED)),
@@ -119,18 +119,18 @@ def test_the_bars_are_where_the_numbers_say() -> None:
 
 
 @pytest.mark.parametrize("kind", NAMES)
-@pytest.mark.parametrize("count", [1, 3, 10, 66])
+@pytest.mark.parametrize("count", [1, 10, 66])
 def test_intervals_are_legible(kind: str, count: int) -> None:
     rows = [Interval(f"{NAMES[kind](i)[:20]} − {NAMES[kind](i + 1)[:20]}", (i - 3.0, i - 5.0, i + 1.0), None if i % 2 else (i, i - 6.0, i))
             for i in range(count)]  # fmt: skip
-    for width in (HALF_IN, WIDE_IN):
+    for width in (HALF_IN, WIDE_IN) if count == 10 else (HALF_IN,):
         figure = draw_intervals(rows, "difference of mean θ (°)", 0.95, "A title", width)
         assert not faults(figure)
         assert len(figure.axes[0].get_yticks()) == min(count, MOST_ROWS)
 
 
 @pytest.mark.parametrize("kind", NAMES)
-@pytest.mark.parametrize("top", [0.0, 0.4, 9.9, 128.0, 1234.0])
+@pytest.mark.parametrize("top", [0.0, 0.4, 1234.0])
 def test_bands_are_legible(kind: str, top: float) -> None:
     pressure = np.linspace(0, 0.35, 36)
     band = AngleBand(
@@ -141,7 +141,7 @@ def test_bands_are_legible(kind: str, top: float) -> None:
 
 
 @pytest.mark.parametrize("kind", NAMES)
-@pytest.mark.parametrize("designs", [1, 2, 5, 12])
+@pytest.mark.parametrize("designs", [1, 5, 12])
 def test_consistency_is_legible(kind: str, designs: int) -> None:
     cells = [
         Cell(NAMES[kind](d), f"s{s}", 3, 100.0, 0.3, 1.8 if s == 3 else -0.5, 1.74, 1.0, 1.9)

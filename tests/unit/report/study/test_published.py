@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import pytest
 from scipy import stats
@@ -13,6 +14,7 @@ from tests.unit.report import studies
 from tests.unit.report.studies import PAPER, SETS
 
 
+@cache
 def changed(**means: float):
     designs = [
         studies.design(name, means.get(name, mean), sd, shell=old.shell)
