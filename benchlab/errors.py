@@ -18,6 +18,15 @@ def printable(text: object) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape", "surrogatepass").decode() for c in str(text))
 
 
+def counted(number: int, what: str) -> str:
+    """A number of things, in words.
+
+    >>> counted(1, "sample"), counted(3, "sample")
+    ('1 sample', '3 samples')
+    """
+    return f"{number} {what}{'s' * (number != 1)}"
+
+
 class BenchlabError(Exception):
     """An expected failure. `str(error)` is the one line that the user sees.
 

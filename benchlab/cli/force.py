@@ -10,7 +10,7 @@ import click
 
 from benchlab.cli.options import Finite
 from benchlab.cli.ranges import Values
-from benchlab.errors import BatchError, InputError, UsageError, printable
+from benchlab.errors import BatchError, InputError, UsageError, counted, printable
 
 SUFFIXES = (".csv", ".tsv", ".txt")
 
@@ -183,7 +183,7 @@ def _peaks(actuator: dict[str, Any]) -> str:
     (low, _), (high, bound) = forces[0], forces[-1]
     span = f"peaks {low:.4g} to {high:.4g} N" if len(peaks) > 1 else f"peak {high:.4g} N"
     if not zero["flat_rests"]:
-        return f"{len(peaks)} cycle{'s' * (len(peaks) != 1)}; largest reading {actuator['largest_reading_N']:.4g} N; nowhere at rest"
+        return f"{counted(len(peaks), 'cycle')}; largest reading {actuator['largest_reading_N']:.4g} N; nowhere at rest"
     drift = "" if zero["slope_N_per_s"] is None else f", drifting {60 * zero['slope_N_per_s']:+.2g} N/min"
     cycles = f"{len(peaks)} cycle{'s' * (len(peaks) != 1)} by {actuator['inferred']['cycles']}"
     return f"{cycles}; {span}{' (≥)' * bound}; zero {zero['first_N']:.3g} N{drift}, taken off"

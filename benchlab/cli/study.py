@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from benchlab.cli.options import Finite
-from benchlab.errors import BatchError, printable
+from benchlab.errors import BatchError, counted, printable
 
 MOST_LINES = 20
 """Files that are not in the study and are listed on the terminal."""
@@ -84,8 +84,8 @@ def _tell_new(found: dict[str, Any], chosen: bool) -> None:
             if shell
             else "no dimensions"
         )
-        more = [f"{len(design['samples'])} samples", size]
-        more += [f"{len(design['force'])} force files"] if design["force"] else []
+        more = [counted(len(design["samples"]), "sample"), size]
+        more += [counted(len(design["force"]), "force file")] if design["force"] else []
         more += [f"simulated in {printable(design['simulated'])}"] if design["simulated"] else []
         click.echo(f"  {printable(design['name'])}: {', '.join(more)}", err=True)
         for sample, files in design["samples"].items():

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from benchlab.errors import counted
 from benchlab.force.curve import BlockedForce
 from benchlab.force.line import Estimate, ForceLine
 from benchlab.report.figures import DPI, figure_class
@@ -32,7 +33,7 @@ def draw_force_figure(found: BlockedForce, drawn: bool = False) -> Figure:
     figure = figure_class()(figsize=(6.4, height), dpi=DPI)
     ax = figure.add_axes((0.72 / 6.4, (foot + 0.12) / height, 5.5 / 6.4, 3.75 / height))
     plot_blocked_force(ax, found)
-    many = f"{len(found.actuators)} actuator{'s' * (len(found.actuators) != 1)}"
+    many = counted(len(found.actuators), "actuator")
     title = f"Blocked force of {many}" + (": drawn, not measured" if drawn else "")
     figure.text(0.72 / 6.4, 1 - 0.27 / height, title, fontsize=12, fontweight="bold", parse_math=False)
     for row, text in enumerate(lines):

@@ -22,8 +22,6 @@ from benchlab.workflows.provenance import made_by
 from benchlab.workflows.report_outputs import NUMBERS, PAGE, PDF, ReportOutputs, names_of, write_report
 from benchlab.workflows.study_values import Progress, collect
 
-STUDY_FILE = "study.yaml"
-
 LIBRARIES = ("numpy", "scipy", "matplotlib", "jinja2")
 """Of which a report names the versions."""
 
@@ -43,7 +41,7 @@ def report(
     Returns the numbers of report.json, with the paths written as `outputs`. A recording that fails is among `failures`; the report is
     written all the same. Raises UsageError and InputError; then there is no new report, and recordings that were analysed stay current.
     """
-    asked = read_study(study / STUDY_FILE if study.is_dir() else study)
+    asked = read_study(study)
     check_options(confidence, difference_deg)
     if pdf:
         check_pdf()

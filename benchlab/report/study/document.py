@@ -5,6 +5,7 @@ from __future__ import annotations
 import shlex
 from pathlib import Path
 
+from benchlab.errors import counted
 from benchlab.report.document import Block, Cell, Column, Document, Items, Section, Table, Words, cut
 from benchlab.report.rounding import words
 from benchlab.report.study.differences import (
@@ -56,7 +57,7 @@ def _facts(report: StudyReport) -> tuple[str, ...]:
     samples = sum(len(design.counted) for design in values.designs)
     recordings = sum(len(sample.recordings) for design in values.designs for sample in design.samples)
     return (
-        f"{_many(len(values.designs), 'design')}, {_many(samples, 'sample')}, {_many(recordings, 'recording')}",
+        f"{counted(len(values.designs), 'design')}, {counted(samples, 'sample')}, {counted(recordings, 'recording')}",
         f"bending angle at {values.pressure_MPa:g} MPa",
         report.provenance["created"][:10],
     )
@@ -112,7 +113,3 @@ def _provenance(report: StudyReport) -> Section:
         "Provenance",
         (Items(tuple((what, cut(text, 400)) for what, text in rows)), Table("inputs", "What was read.", columns, inputs, note)),
     )  # fmt: skip
-
-
-def _many(number: int, what: str) -> str:
-    return f"{number} {what}{'s' * (number != 1)}"

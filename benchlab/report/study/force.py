@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from benchlab.errors import BenchlabError
+from benchlab.errors import BenchlabError, counted
 from benchlab.force.curve import BlockedForce
 from benchlab.io.published import BLOCKED_FORCE
 from benchlab.io.study_values import DesignValues
@@ -58,7 +58,7 @@ def _found(force: BlockedForce) -> str:
     last, places = len(force.pressure_MPa) - 1, _places(force)
     spread = "" if not math.isfinite(force.sd_N[last]) else f" ± {number(float(force.sd_N[last]), places).text}"
     bound = "≥ " * bool(force.lower_bound[:, last].any())
-    size = f"{_many(int(force.n[last]), 'actuator')}, {_many(int(force.cycles.sum()), 'cycle')} at {_many(last + 1, 'pressure')}"
+    size = f"{counted(int(force.n[last]), 'actuator')}, {counted(int(force.cycles.sum()), 'cycle')} at {counted(last + 1, 'pressure')}"
     text = f"{bound}{number(float(force.over_actuators_N[last]), places).text}{spread} N at {force.pressure_MPa[last]:g} MPa ({size})."
     if force.line is None:
         return f"{text} No line: {force.line_reason}."
@@ -188,7 +188,3 @@ def _lever(design: DesignValues, force: BlockedForce) -> str:
 
 def _places(force: BlockedForce) -> int:
     return places_of(float(force.over_actuators_N[-1]), float(force.sd_N[-1]))
-
-
-def _many(number: int, what: str) -> str:
-    return f"{number} {what}{'s' * (number != 1)}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
+from benchlab.errors import counted
 from benchlab.force.curve import BlockedForce
 from benchlab.report.document import Section, Tile, Tiles, Words, cut
 from benchlab.report.rounding import decimals_of, number
@@ -129,7 +130,7 @@ def _simulation(report: StudyReport) -> str:
     errors, places = _errors(report), report.places
     if not errors:
         return ""
-    text = f"Simulated less measured angle is {_span(errors, places)} ({_many(len(errors))})"
+    text = f"Simulated less measured angle is {_span(errors, places)} ({counted(len(errors), 'design')})"
     if len(errors) > 1:
         mean = sum(map(abs, errors)) / len(errors)
         text += f"; mean |error| {number(mean, places).text}°, RMSE {number(_rms(errors), places).text}°"
@@ -158,7 +159,3 @@ def _span(errors: Sequence[float], places: int) -> str:
     signed = [f"+{text}" if error > 0 and text.strip("0.") else text for error in (min(errors), max(errors))
               if (text := number(error, places).text)]  # fmt: skip
     return f"{signed[0]}°" if len(errors) == 1 else f"{signed[0]} to {signed[1]}°"
-
-
-def _many(designs: int) -> str:
-    return f"{designs} design{'s' * (designs != 1)}"
