@@ -1,4 +1,4 @@
-"""Films: times, sizes, turns, damage. BAD_INPUTS section A, rows 11–13 and 19–36, 44–46."""
+"""Films: times, sizes, turns, damage."""
 
 from __future__ import annotations
 

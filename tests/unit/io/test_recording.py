@@ -1,4 +1,4 @@
-"""What may be opened, and what is refused in one line: BAD_INPUTS section A, rows 1–18, 35–45."""
+"""What may be opened, and what is refused in one line."""
 
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ def test_unbalanced_groups_as_scipy_finds_them(seed: int) -> None:
 
 
 def test_the_papers_table() -> None:
-    """Means and SDs of five samples each, Table I. FACTS derived from them: F(4, 20) = 529.46, p = 5.6e-20."""
+    """Means and SDs of five samples each, Table I. From them: F(4, 20) = 529.46, p = 5.6e-20."""
     mean = [Decimal(x) for x in ("110.2", "125.7", "60.3", "79.9", "56.7")]
     groups = groups_of_summaries("abcde", [5] * 5, mean, [1.9, 4.0, 3.6, 1.7, 2.9])
     found, of_welch = one_way(groups), welch(groups)
