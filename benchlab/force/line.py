@@ -73,7 +73,7 @@ def fit_line(pressure_MPa: FloatArray, force_N: FloatArray, confidence: float = 
     the test of pressure as a factor beyond "a line for each actuator" against the actuator × pressure mean square, the error term of
     trend tests in randomized blocks (Winer, Statistical Principles in Experimental Design, ch. 4; lack of fit: Draper & Smith, Applied
     Regression Analysis, ch. 2). Lines that differ by actuator leave no trace in r. What it asks for is that the deviations from lines
-    scatter alike at all pressures; simulated with an SD proportional to pressure, it rejects a straight line in 9 % instead of 5 %
+    scatter alike at all pressures; simulated with an SD proportional to pressure, it rejects a straight line in 8 % instead of 5 %
     of cases. The bow, one contrast an actuator with its own t test, does not ask for that, and has m − 1 degrees of freedom only.
 
     >>> p = np.array([0.1, 0.2, 0.3, 0.4])

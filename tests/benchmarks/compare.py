@@ -1,4 +1,7 @@
-"""How many digits of F are right: `python tests/benchmarks/compare.py` prints a table of NIST's eleven certified one-way sets.
+"""What `benchlab stats` and `benchlab report` reach: `python tests/benchmarks/compare.py [digits] [study]` prints tables.
+
+digits: how many of F are right in NIST's eleven certified one-way sets. study: angles and force of the sample study against what was drawn,
+and what its report takes.
 
 benchlab reads the values as decimal text, from a table as `benchlab stats` does; scipy and statsmodels get them as floats, as any program
 that reads numbers would hand them over. Digits are NIST's log relative error against 15 certified ones.
@@ -7,7 +10,10 @@ that reads numbers would hand them over. Digits are NIST's log relative error ag
 from __future__ import annotations
 
 import argparse
+import csv
 import platform
+import subprocess
+import sys
 import tempfile
 import time
 import warnings
@@ -25,6 +31,8 @@ import benchlab
 from benchlab.errors import BenchlabError
 from benchlab.workflows.stats import StatsColumns
 from benchlab.workflows.stats import stats as run
+
+SAMPLE_DATA = Path(__file__).parents[2] / "sample_data"
 
 
 def of_benchlab(nist: CertifiedSet, folder: Path) -> float:
@@ -49,8 +57,41 @@ def of_statsmodels(nist: CertifiedSet) -> float:
     return float(anova_oneway(rows_of(nist), use_var="equal").statistic)
 
 
+def study() -> None:
+    """The sample study through `benchlab report`, twice."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "report"
+        command = [sys.executable, "-m", "benchlab", "report", str(SAMPLE_DATA), "--out", str(out), "--jobs", "2"]
+        took = []
+        for _ in range(2):
+            start = time.perf_counter()
+            subprocess.run(command, check=True, capture_output=True)
+            took.append(time.perf_counter() - start)
+        with (out / "tables" / "values.csv").open(encoding="utf-8") as file:
+            found = {Path(row["recording"]).name: float(row["angle_deg"]) for row in csv.DictReader(file)}
+        page = (out / "report.html").stat().st_size
+    with (SAMPLE_DATA / "truth.csv").open(encoding="utf-8") as file:
+        truth = {Path(row["file"]).name: float(row["angle_deg"]) for row in csv.DictReader(file)}
+    error = np.array([found[name] - angle for name, angle in truth.items()])
+    print(f"\n| sample study: {len(error)} clips | |\n|---|---|")
+    print(f"| angle less truth, mean | {error.mean():+.3f}° |\n| largest | {np.abs(error).max():.3f}° |")
+    print(
+        f"| the report, `--jobs 2` | {took[0]:.0f} s |\n| again, nothing changed | {took[1]:.0f} s |\n| the page | {page / 1e6:.2f} MB |"
+    )
+
+
 def main() -> None:
-    argparse.ArgumentParser(description=__doc__).parse_args()
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("what", nargs="*", choices=[[], "digits", "study"], help="what to measure [default: all]")
+    what = parser.parse_args().what or ["digits", "study"]
+    if "digits" in what:
+        digits_of_F()
+    if "study" in what:
+        study()
+
+
+def digits_of_F() -> None:
+    """The table of NIST's sets."""
     versions = f"benchlab {benchlab.__version__}, scipy {scipy.__version__}, statsmodels {statsmodels.__version__}"
     print(f"{date.today().isoformat()}, {versions}, Python {platform.python_version()}\n")
     print(
