@@ -14,6 +14,9 @@ from benchlab.errors import BatchError, InputError, UsageError, counted, printab
 
 SUFFIXES = (".csv", ".tsv", ".txt")
 
+UNEVEN = 1.5
+"""A time step that is so many times the median one is told."""
+
 
 @click.command(short_help="Exports of testing machines; blocked force against pressure.")
 @click.argument("files", metavar="FILE|FOLDER...", nargs=-1, required=True, type=click.Path(path_type=Path))
@@ -161,7 +164,11 @@ def _tell(found: dict[str, Any]) -> None:
 
 
 def _tell_file(one: dict[str, Any]) -> None:
-    rate = "" if one["sample_rate_Hz"] is None else f", {one['sample_rate_Hz']:.4g} readings/s"
+    rate, steps = "", one["time_step_s"]
+    if steps is not None:
+        rate = f", {one['sample_rate_Hz']:.4g} readings/s"
+        uneven = steps["max"] > UNEVEN * steps["median"]
+        rate += f" (uneven: steps of {steps['min']:.3g} to {steps['max']:.3g} s)" * uneven
     many = f", {len(one['specimens'])} specimens" if len(one["specimens"]) > 1 else ""
     click.echo(f"{printable(one['file'])}: {one['rows']} rows{many}{rate}", err=True)
     ranges = (f"{name} {r['min']:.5g} to {r['max']:.5g}" for name, r in one["columns"].items() if r["min"] is not None)

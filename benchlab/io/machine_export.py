@@ -76,15 +76,17 @@ def read_machine_export(path: Path, options: ExportOptions | None = None) -> Mac
 def export_document(export: MachineExport) -> dict[str, Any]:
     """The export as `benchlab force --json` gives it: numbers that are not there are None.
 
-    sample_rate_Hz: of the median step of time.
+    sample_rate_Hz: of the median step of time; time_step_s: the smallest, median and largest step forward, None without a time.
     """
+    steps = _time_steps(export.tests)
     present = [key for key in KEYS.values() if any(key in test.columns for test in export.tests)]
     return {
         "file": str(export.path),
         "rows": export.rows,
         "specimens": [test.specimen for test in export.tests],
         "columns": {key: _range([t.columns[key] for t in export.tests if key in t.columns]) for key in present},
-        "sample_rate_Hz": _sample_rate(export.tests),
+        "sample_rate_Hz": None if steps is None else 1 / steps["median"],
+        "time_step_s": steps,
         "inferred": export.inferred,
         "preamble": export.preamble,
         "warnings": list(export.warnings),
@@ -106,7 +108,9 @@ def _range(parts: Sequence[FloatArray]) -> dict[str, float | None]:
     return {"min": float(values.min()), "max": float(values.max())} if values.size else {"min": None, "max": None}
 
 
-def _sample_rate(tests: Sequence[MachineTest]) -> float | None:
+def _time_steps(tests: Sequence[MachineTest]) -> dict[str, float] | None:
     steps = np.concatenate([np.diff(test.columns.get("time_s", np.empty(0))) for test in tests])
     steps = steps[steps > 0]
-    return float(1 / np.median(steps)) if steps.size else None
+    if not steps.size:
+        return None
+    return {"min": float(steps.min()), "median": float(np.median(steps)), "max": float(steps.max())}

@@ -343,6 +343,13 @@ def test_a_name_is_shown_as_text_and_written_so_that_no_spreadsheet_runs_it(tmp_
     assert "\x1b" not in (tmp_path / "blocked_force.svg").read_text()
 
 
+def test_steps_of_time_that_are_uneven_are_told(tmp_path: Path, benchlab) -> None:
+    path = tmp_path / "a.csv"
+    times = [0.0, 0.1, 0.2, 0.3, 0.4, 5.4, 5.5, 5.6]
+    path.write_text("Time (s),Load (N)\n" + "".join(f"{t:.1f},{t + 1:.2f}\n" for t in times))
+    assert "8 rows, 10 readings/s (uneven: steps of 0.1 to 5 s)" in benchlab("force", path, "--out", tmp_path).err
+
+
 def test_a_real_record_of_a_muscle(real_folder: Path, tmp_path: Path, benchlab) -> None:
     """15,000 rows at about 530 readings a second: one loading from 7 to 627 kPa and back to 76 kPa, both in steps, with 323 N at most
     and 15 N left in the end: it never comes to rest unloaded."""
@@ -357,6 +364,9 @@ def test_a_real_record_of_a_muscle(real_folder: Path, tmp_path: Path, benchlab) 
     assert done.code == 0, done.err
     (one,) = done.json["files"]
     assert one["rows"] == 15000 and one["sample_rate_Hz"] == pytest.approx(500)
+    assert one["time_step_s"] == pytest.approx(
+        {"min": 0.001, "median": 0.002, "max": float(np.diff(table[:, 2]).max())}
+    )
     ranges = {name: (r["min"], r["max"]) for name, r in one["columns"].items()}
     assert ranges["force_N"] == (table[:, 0].min(), table[:, 0].max()) == (0.8277, 323.24)
     assert ranges["pressure_MPa"] == pytest.approx((0.0074146, 0.62662))

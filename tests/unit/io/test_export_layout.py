@@ -175,3 +175,7 @@ def test_no_time_no_rate_and_no_numbers_no_extremes(tmp_path: Path) -> None:
     assert found["columns"]["force_N"] == {"min": 1.5, "max": 2.5}
     timed = export_document(read(tmp_path / "b.csv", HEAD + rows(1) + "\n" + HEAD + rows(2)))
     assert timed["sample_rate_Hz"] == pytest.approx(100) and timed["rows"] == 24
+    assert (
+        timed["time_step_s"] == pytest.approx({"min": 0.01, "median": 0.01, "max": 0.01})
+        and found["time_step_s"] is None
+    )
