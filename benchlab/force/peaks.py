@@ -11,6 +11,7 @@ import numpy as np
 from scipy.ndimage import median_filter
 from scipy.signal import savgol_coeffs, savgol_filter
 
+from benchlab.errors import counted
 from benchlab.force.baseline import Baseline, find_baseline
 from benchlab.force.clipping import clipping_value, is_clipped
 from benchlab.force.loading import TIMES_NOISE, Loading, find_loadings, half_height, in_record
@@ -19,8 +20,12 @@ from benchlab.units import FloatArray
 RESOLVED_SHARE = 20
 """A peak is the top of a local parabola over this fraction of its loading."""
 
-WILD = 0.02
-"""A reading that stands alone by more than this share of its loading's height (and than noise does) is no peak."""
+LEAST_WINDOW, LEAST_LOADED = 5, 15
+"""Fewest readings of a parabola, and of a loading that gets one."""
+
+WILD, POINTED = 0.02, 4.0
+"""A reading that stands alone by more than this share of its loading's height, than noise does, and than the top of a pointed loading
+could (so many heights over the number of its readings) is no peak."""
 
 NO_CONTACT = "no contact seen"
 
@@ -31,7 +36,8 @@ class ForcePeak:
 
     raw_N: the largest reading. baseline_N: the load cell's zero then. peak_N: the smoothed top less the zero; sd_N: its standard
     deviation, of noise and zero. lower_bound: the true peak is this or more; cut: the record begins or ends within the loading,
-    whose peak may not be in it; why: what is doubtful, in words.
+    whose peak may not be in it; alone: readings far from both neighbours, which do not count; coarse: too few readings for more than the
+    largest; why: what is doubtful, in words.
     """
 
     number: int
@@ -43,6 +49,8 @@ class ForcePeak:
     sd_N: float
     lower_bound: bool = False
     cut: bool = False
+    alone: int = 0
+    coarse: bool = False
     why: str = ""
 
 
@@ -79,8 +87,9 @@ def peaks_of(
     a column of cycles); else they are found in the force.
 
     The zero is that of `find_baseline`. The peak of a loading is the largest value, from half way up to half way down, of a local
-    parabola (Savitzky, Golay, Anal. Chem. 36, 1627, 1964) over a twentieth of the loading's length, so that it is not the luckiest
-    of many noisy readings; with fewer than five readings in that, it is the largest reading.
+    parabola (Savitzky, Golay, Anal. Chem. 36, 1627, 1964) over a twentieth of the loading's length, of five readings at least, so that
+    it is not the luckiest of many noisy readings, nor one that stands alone. With fewer than 15 readings in the loading it is the
+    largest reading.
 
     >>> force = np.repeat([1.0, 5.0, 1.0, 9.0, 1.0], 20)
     >>> [round(peak.peak_N, 3) for peak in peaks_of(force).peaks]
@@ -144,13 +153,14 @@ def _peak(
     number: int, force: FloatArray, time: FloatArray | None, cycle: Loading, zero: Baseline, clip: float | None
 ) -> ForcePeak:
     loaded = force[cycle.rise : cycle.fall + 1]
-    window = (len(loaded) // RESOLVED_SHARE) | 1
-    gain = 1.0
+    window = max((len(loaded) // RESOLVED_SHARE) | 1, LEAST_WINDOW)
+    gain, alone = 1.0, 0
     smooth = loaded
-    if window >= 5:
+    if len(loaded) >= LEAST_LOADED:
         around = force[max(0, cycle.rise - window) : cycle.fall + 1 + window]
         left = cycle.rise - max(0, cycle.rise - window)
-        clean = _without_wild(around, zero.noise_N)
+        clean = _without_wild(around, zero.noise_N, max(WILD, POINTED / len(loaded)))
+        alone = int(np.count_nonzero((around != clean)[left : left + len(loaded)]))
         smooth = savgol_filter(clean, window, 2)[left : left + len(loaded)]
         smooth = np.minimum(smooth, clean.max())  # a parabola swings over at a corner
         gain = float(np.square(savgol_coeffs(window, 2)).sum())
@@ -158,17 +168,24 @@ def _peak(
     level, sd = zero.at(cycle.rise + top)
     whole = force[cycle.start : cycle.stop]
     clipped = is_clipped(loaded, clip)
-    why = [f"clipped at {clip:.4g} N" if clipped else "", f"the record is cut at its {cycle.cut}" if cycle.cut else ""]
+    why = [
+        f"clipped at {clip:.4g} N" if clipped else "",
+        f"the record is cut at its {cycle.cut}" if cycle.cut else "",
+        f"{counted(alone, 'reading')} far from both neighbours left out" if alone else "",
+        f"{counted(len(loaded), 'reading')} while loaded: the largest reading" if len(loaded) < LEAST_LOADED else "",
+    ]
     return ForcePeak(
         number, cycle.rise + top, math.nan if time is None else float(time[cycle.rise + top]), float(whole.max()), level,
-        float(smooth[top]) - level, math.sqrt(gain * zero.noise_N**2 + sd**2), clipped, bool(cycle.cut), "; ".join(filter(None, why)),
+        float(smooth[top]) - level, math.sqrt(gain * zero.noise_N**2 + sd**2), clipped, bool(cycle.cut), alone, len(loaded) < LEAST_LOADED,
+        "; ".join(filter(None, why)),
     )  # fmt: skip
 
 
-def _without_wild(force: FloatArray, noise_N: float) -> FloatArray:
-    """Readings (n,) of which one that stands alone, far from both neighbours, is replaced by the median of the three."""
+def _without_wild(force: FloatArray, noise_N: float, share: float) -> FloatArray:
+    """Readings (n,) of which one that stands alone, far from both neighbours, is replaced by the median of the three. share: of the
+    height, from which on it is far."""
     middle = median_filter(force, 3, mode="nearest")
-    return np.where(np.abs(force - middle) > max(6 * noise_N, WILD * np.ptp(middle)), middle, force)
+    return np.where(np.abs(force - middle) > max(6 * noise_N, share * np.ptp(middle)), middle, force)
 
 
 def _with_gaps(peak: ForcePeak, cycle: Loading, known: np.ndarray) -> ForcePeak:

@@ -15,7 +15,7 @@ from benchlab.force.loading import Loading, find_loadings
 from benchlab.force.peaks import ForcePeak, ForceRecord, loadings_of_cycles, peaks_of, pushes_down
 from benchlab.io.export_tests import MachineTest
 from benchlab.io.machine_export import ExportOptions
-from benchlab.io.pressure import PressureRecord
+from benchlab.io.pressure import MAX_PRESSURE_MPA, PressureRecord
 from benchlab.units import FloatArray
 from benchlab.workflows.force_doubts import doubt_of_clocks, doubts_of, doubts_of_cycles, named_cycles
 
@@ -45,6 +45,10 @@ class ForceSettings:
 
     def check(self) -> None:
         """Raises UsageError for values out of range, or without meaning together."""
+        if self.steps_MPa and max(self.steps_MPa) > MAX_PRESSURE_MPA:
+            most = max(self.steps_MPa)
+            hint = f"pressures are in MPa: {most:g} kPa is {most / 1000:g}"
+            raise UsageError(f"--steps-MPa goes to {most:g}, at most {MAX_PRESSURE_MPA:g} MPa are read", hint=hint)
         if self.steps_MPa and not (min(self.steps_MPa) > 0 and all(np.diff(self.steps_MPa) > 0)):
             raise UsageError(
                 "steps of pressure do not grow from above 0 MPa", hint="give them as 0.035:0.35:0.035, or 0.1,0.2"

@@ -25,6 +25,10 @@ def doubts_of(record: ForceRecord) -> Iterator[str]:
         yield f"the load cell is at its limit: peaks are clipped at {record.clipped_at_N:.2f} N in {named_cycles(clipped)}, and count as ≥"
     elif missing := [p.number for p in record.peaks if p.lower_bound]:
         yield f"readings are missing while loaded in {named_cycles(missing)}: their peaks count as ≥"
+    if alone := [p.number for p in record.peaks if p.alone]:
+        yield f"readings that stand alone, far from both neighbours, do not count in {named_cycles(alone)}"
+    if coarse := [p.number for p in record.peaks if p.coarse]:
+        yield f"few readings in {named_cycles(coarse)}: their peaks are the largest readings, with all of their noise"
 
 
 def doubts_of_cycles(record: ForceRecord, pressure: FloatArray | None) -> Iterator[str]:

@@ -3,6 +3,8 @@
 import csv
 import json
 import re
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -233,3 +235,13 @@ def test_a_narrow_terminal(benchlab, monkeypatch: pytest.MonkeyPatch) -> None:
     (head,) = [line for line in text.splitlines() if line.startswith("pair ")]
     assert head.split() == ["pair", "difference", "Tukey", "HSD", "p", "Games–Howell", "p"] and len(head) <= 80
     assert "(on a wider terminal, with --json or --out also: Hedges' g, interval)" in text
+
+
+def test_a_reader_that_leaves_is_no_bug(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text("group,value\n" + "".join(f"{g},{v}\n" for g in "abcdefgh" for v in range(5)))
+    command = (
+        f"'{sys.executable}' -m benchlab stats '{path}' --value value --group group | head -1; exit ${{PIPESTATUS[0]}}"
+    )
+    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=False)
+    assert done.returncode == 0 and "8 groups" in done.stdout

@@ -175,3 +175,33 @@ def test_a_column_of_cycles_tells_where_they_are() -> None:
     found = peaks_of(trace.force_N, trace.time_s, loadings_of_cycles(cycle, trace.force_N))
     assert errors(found, trace) == pytest.approx([0, 0, 0], abs=0.03)
     assert len(find_loadings(trace.force_N)) == 6  # a dip to a tenth is a return, where nobody says otherwise
+
+
+@pytest.mark.parametrize("rate_Hz", [20, 100])
+def test_one_reading_that_stands_alone_is_no_peak(rate_Hz: float) -> None:
+    trace = drawn(rate_Hz=rate_Hz, noise_N=0.02)
+    clean = peaks_of(trace.force_N, trace.time_s)
+    row = clean.peaks[7].row + rate_Hz // 2
+    force = trace.force_N.copy()
+    force[row] *= 2
+    found = peaks_of(force, trace.time_s)
+    assert found.peaks[7].raw_N == force[row] and found.peaks[7].alone == 1 and "left out" in found.peaks[7].why
+    assert found.peaks[7].peak_N == pytest.approx(clean.peaks[7].peak_N, abs=0.05)
+    assert [peak.alone for peak in found.peaks if peak.number != 8] == [0] * 49
+
+
+def test_a_pointed_loading_keeps_its_point() -> None:
+    for readings in (15, 21, 61):
+        top = 10 * (1 - np.abs(np.linspace(-1, 1, readings)))
+        record = peaks_of(np.concatenate([*[np.concatenate([np.zeros(20), top])] * 4, np.zeros(20)]))
+        assert [peak.alone for peak in record.peaks] == [0] * 4
+        assert record.peaks[1].peak_N == pytest.approx(10, abs=10 * 2.5 / readings)
+
+
+def test_few_readings_give_the_largest_one_and_say_so() -> None:
+    record = peaks_of(
+        np.concatenate([np.tile(np.concatenate([np.zeros(9), [2.0, 4.0, 4.2, 4.1, 2.0]]), 5), np.zeros(9)])
+    )
+    assert all(
+        peak.coarse and peak.peak_N == pytest.approx(4.2) and "largest reading" in peak.why for peak in record.peaks
+    )
