@@ -5,8 +5,11 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from benchlab.errors import BenchlabError, UsageError
 from benchlab.force.curve import BlockedForce, blocked_force
@@ -29,6 +32,10 @@ class ForceInput:
     path: Path
     actuator: str = ""
     pressure: Path | None = None
+
+
+LEAST_ALIKE, ALIKE = 20, 1e-3
+"""So many readings of force, each alike within this share of the largest, are one record exported twice."""
 
 
 @dataclass(frozen=True)
@@ -186,6 +193,15 @@ def _refuse_copies(read: Sequence[ForceRead]) -> None:
             what = f"has the same content as {seen[item.sha256].name}"
             raise UsageError(what, file=item.export.path, hint="an actuator counts once: leave one of them out")
         seen[item.sha256] = item.export.path
+    tests = [(item.export.path, test.columns["force_N"]) for item in read for test in item.export.tests]
+    for (one, a), (other, b) in combinations(tests, 2):
+        if (
+            one != other
+            and len(a) == len(b) >= LEAST_ALIKE
+            and np.allclose(a, b, rtol=0, atol=ALIKE * np.nanmax(np.abs(a)), equal_nan=True)
+        ):
+            what = f"has the readings of {one.name}, perhaps in other units"
+            raise UsageError(what, file=other, hint="an actuator counts once: leave one of them out")
 
 
 def _check_outputs(paths: Sequence[Path], inputs: Sequence[ForceInput], folder: Path, overwrite: bool) -> None:

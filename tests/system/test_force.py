@@ -385,3 +385,12 @@ def test_a_real_record_of_a_muscle(real_folder: Path, tmp_path: Path, benchlab) 
 def test_steps_in_kPa_are_refused(tmp_path: Path, benchlab) -> None:
     done = benchlab("force", FILES[0], "--steps-MPa", "35:350:35", "--cycles", 5, "--out", tmp_path)
     assert done.code == 2 and "350 kPa is 0.35" in done.err and not list(tmp_path.iterdir())
+
+
+def test_one_record_exported_twice_in_two_units_is_one_actuator(tmp_path: Path, benchlab) -> None:
+    force = [abs(10 * (i % 20) / 20) for i in range(100)]
+    for name, unit, factor in (("newton", "N", 1.0), ("kilo", "kN", 1e-3)):
+        rows = "".join(f"{i / 10:.1f},{value * factor:.5f}\n" for i, value in enumerate(force))
+        (tmp_path / f"{name}.csv").write_text(f"Time (s),Load ({unit})\n{rows}")
+    done = benchlab("force", tmp_path / "newton.csv", tmp_path / "kilo.csv", "--out", tmp_path / "out")
+    assert done.code == 2 and "has the readings of newton.csv" in done.err
