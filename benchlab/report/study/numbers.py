@@ -10,7 +10,7 @@ from benchlab.force.curve_json import blocked_force_json
 from benchlab.io.nexus import plain
 from benchlab.io.study_values import DesignValues, Missing, SampleValues
 from benchlab.report.study.differences import all_warnings
-from benchlab.report.study.report import ComparedSet, StudyReport, error_of, mean_of, sd_of, simulated_of
+from benchlab.report.study.report import ComparedSet, StudyReport, error_of, mean_of, scatter_of, sd_of, simulated_of
 from benchlab.report.study.verdict import verdict_words
 
 SCHEMA = "benchlab.study_report/1"
@@ -18,7 +18,7 @@ SCHEMA = "benchlab.study_report/1"
 
 def report_numbers(report: StudyReport) -> dict[str, Any]:
     """The document of report.json: JSON's own types; null is what is not known or not defined, never NaN."""
-    values = report.values
+    values, scatter = report.values, scatter_of(report)
     found: Any = plain(
         {
             "schema": SCHEMA,
@@ -27,6 +27,7 @@ def report_numbers(report: StudyReport) -> dict[str, Any]:
             "pressure_MPa": values.pressure_MPa,
             "hold_tolerance_MPa": values.hold_tolerance_MPa,
             "verdict": [f"{block.head} {block.text}".strip() for block in verdict_words(report)],
+            "scatter": None if scatter is None else {**asdict(scatter), "limit_deg": scatter.limit_deg},
             "designs": [_design(report, design) for design in values.designs],
             "curve_pressure_MPa": values.curve_MPa,
             "sets": [_set(one) for one in report.compared],

@@ -56,16 +56,21 @@ def _precisions(report: StudyReport) -> Table:
 
 def _roles(found: Comparison) -> str:
     """What plays which role in the terms of ISO 5725."""
+    last = (
+        "r and R are 2.8 times these, what two results would stay within in 95 % of cases if the SD were known exactly; with few "
+        "degrees of freedom they are uncertain themselves. Designs were chosen, not drawn at random: their SD only describes."
+    )
     if found.repeatability.replicate == "cycle":
         return (
             "After ISO 5725-2 and ASTM E691, a sample standing for a laboratory and its cycles for replicates: s_r is the scatter of "
-            "cycles, s_R that of one cycle of any sample; r and R are 2.8 times these: two cycles of one sample, and of two samples, "
-            "differ by less in 95 % of cases. Designs were chosen, not drawn at random: their SD only describes."
+            "cycles, s_R that of one cycle of any sample, r and R the limits for two cycles of one sample, and of two samples. The "
+            "verdict has another SD and limit: those of samples, each with the mean of its cycles (by design: “SD of samples”, below). The "
+            f"SD of samples in this table is a variance component, without the share of that scatter which comes from cycles. {last}"
         )
     return (
-        "After ISO 5725-2 and ASTM E691, with samples as the replicates: s_r is the scatter of samples of one design and r, 2.8 times "
-        "that, the difference that two of them stay below in 95 % of cases. With one cycle a sample there is no s_R. Designs were "
-        "chosen, not drawn at random: their SD only describes."
+        "After ISO 5725-2 and ASTM E691, with samples as the replicates: s_r is the scatter of samples of one design and r the limit "
+        "for two of them, for all designs of the set together; the verdict’s are of all designs. With one cycle a sample there is no "
+        f"s_R. {last}"
     )
 
 

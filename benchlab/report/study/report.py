@@ -16,6 +16,7 @@ from benchlab.io.study_values import DesignValues, StudySet, StudyValues
 from benchlab.report.document import NONE, Cell, cut
 from benchlab.report.rounding import decimals_of, number
 from benchlab.stats.comparison import Comparison
+from benchlab.stats.repeatability import FACTOR
 from benchlab.stats.studentized_range import FLOOR
 from benchlab.stats.wording import p_text
 
@@ -40,6 +41,21 @@ class PublishedSet:
     figure: str
     angles: tuple[PublishedAngle, ...]
     found: Comparison
+
+
+@dataclass(frozen=True)
+class Scatter:
+    """Pooled standard deviation of samples in degrees, with its chi-square interval and the degrees of freedom that it rests on."""
+
+    sd_deg: float
+    low_deg: float
+    high_deg: float
+    df: int
+
+    @property
+    def limit_deg(self) -> float:
+        """The repeatability limit r of two samples (ISO 5725-6, ASTM E691)."""
+        return FACTOR * self.sd_deg
 
 
 @dataclass(frozen=True)
@@ -87,11 +103,16 @@ def sd_of(design: DesignValues) -> float | None:
     return float(angles.std(ddof=1)) if len(angles) > 1 else None
 
 
-def pooled_sd_of(report: StudyReport) -> float | None:
-    """Standard deviation of samples about the mean of their design, over all designs; None where none has two samples."""
+def scatter_of(report: StudyReport) -> Scatter | None:
+    """Scatter of samples about the mean of their design, over all designs; None where none has two samples."""
     several = [angles for design in report.values.designs if len(angles := design.angles_deg) > 1]
     df = sum(len(angles) - 1 for angles in several)
-    return math.sqrt(sum(float(((angles - angles.mean()) ** 2).sum()) for angles in several) / df) if df else None
+    if not df:
+        return None
+    ss = sum(float(((angles - angles.mean()) ** 2).sum()) for angles in several)
+    tail = (1 - report.confidence) / 2
+    low, high = (math.sqrt(ss / float(special.chdtri(df, share))) for share in (tail, 1 - tail))
+    return Scatter(math.sqrt(ss / df), low, high, df)
 
 
 def interval_of(design: DesignValues, confidence: float) -> tuple[float | None, float | None]:

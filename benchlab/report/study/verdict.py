@@ -10,13 +10,23 @@ from benchlab.force.curve import BlockedForce
 from benchlab.report.document import Section, Tile, Tiles, Words, cut
 from benchlab.report.rounding import decimals_of, number
 from benchlab.report.study.published import paper_words
-from benchlab.report.study.report import ComparedSet, StudyReport, error_of, mean_of, name_of, pooled_sd_of, sd_of
+from benchlab.report.study.report import (
+    ComparedSet,
+    Scatter,
+    StudyReport,
+    error_of,
+    mean_of,
+    name_of,
+    scatter_of,
+    sd_of,
+)
 from benchlab.stats.comparison import Comparison
 from benchlab.stats.pairs import Pair
-from benchlab.stats.repeatability import FACTOR
 from benchlab.stats.wording import p_equals
 
 _MOST_PAIRS = 6
+_FEW = 10
+"""Degrees of freedom below which a limit is said to be uncertain."""
 
 
 def verdict_section(report: StudyReport) -> Section:
@@ -38,7 +48,7 @@ def verdict_words(report: StudyReport) -> list[Words]:
 
 
 def _tiles(report: StudyReport) -> Iterator[Tile]:
-    places, found, own = report.places, report.whole.found, pooled_sd_of(report)
+    places, found, own = report.places, report.whole.found, scatter_of(report)
     means = [(mean, design.name) for design in report.values.designs if (mean := mean_of(design)) is not None]
     if means:
         ends = dict.fromkeys((min(means), max(means)))
@@ -46,14 +56,18 @@ def _tiles(report: StudyReport) -> Iterator[Tile]:
         names = " to ".join(cut(name, 24) for _, name in ends)
         yield Tile(f"{value}°", f"mean angle at {report.values.pressure_MPa:g} MPa", names)
     if own is not None:
-        limit = f"two samples differ by less than {number(FACTOR * own, places).text}° in 95 % of cases"
-        yield Tile(f"± {number(own, places).text}°", "SD between samples of a design", limit)
+        name = f"SD between samples of a design{', means of cycles' * _has_cycles(report)}"
+        limit = f"{_rests_on(own, report)}; repeatability limit r, 2.8 SD: {number(own.limit_deg, places).text}°{_doubt(own)}"
+        yield Tile(f"± {number(own.sd_deg, places).text}°", name, limit)
     tested = [pair for pair in found.tukey if pair.p is not None] if found is not None else []
     if found is not None and tested:
-        told = sum(_differ(pair, found) for pair in tested)
-        yield Tile(
-            f"{told} of {len(tested)}", "pairs of designs told apart", f"Tukey HSD at {found.alpha:.3g}, all designs"
-        )
+        told = [pair for pair in tested if _differ(pair, found)]
+        unsure = len(_not_by_games_howell(found))
+        but = f"; {unsure} of them not by Games–Howell" * bool(unsure)
+        more = len(_by_games_howell_alone(found))
+        but += f"; {more} more by Games–Howell" * bool(more)
+        note = f"by Tukey HSD at {found.alpha:.3g}, all designs{but}"
+        yield Tile(f"{len(told)} of {len(tested)}", "pairs of designs told apart", note)
     forces = [(force, one.name) for one in report.values.designs if isinstance(force := one.force, BlockedForce)]
     if len(forces) == 1:
         force, name = forces[0]
@@ -96,14 +110,43 @@ def _of_pairs(found: Comparison) -> str:
     alike = [pair for pair in tested if not _differ(pair, found)]
     if not alike:
         largest = max(pair.p for pair in tested if pair.p is not None)
-        return f"Each of the {len(tested)} pairs differs too (Tukey HSD, largest {p_equals(largest)})."
-    if len(alike) == len(tested):
-        return f"Tukey HSD tells none of the {len(tested)} pairs apart."
-    listed = "; ".join(f"{cut(pair.a, 30)} and {cut(pair.b, 30)} ({p_equals(pair.p)})" for pair in alike[:_MOST_PAIRS])
-    more = f"; and {len(alike) - _MOST_PAIRS} more" if len(alike) > _MOST_PAIRS else ""
-    return (
-        f"Tukey HSD tells {len(tested) - len(alike)} of {len(tested)} pairs apart; not shown to differ: {listed}{more}."
+        text = f"Each of the {len(tested)} pairs differs too (Tukey HSD, largest {p_equals(largest)})"
+    elif len(alike) == len(tested):
+        text = f"Tukey HSD tells none of the {len(tested)} pairs apart"
+    else:
+        listed = _listed(alike, " and ")
+        text = f"Tukey HSD tells {len(tested) - len(alike)} of {len(tested)} pairs apart; not shown to differ: {listed}"
+    return f"{text}.{_but_games_howell(found)}"
+
+
+def _but_games_howell(found: Comparison) -> str:
+    """The pairs on which Games–Howell, which does not take variances to be equal, disagrees with Tukey."""
+    fewer, more = _not_by_games_howell(found), _by_games_howell_alone(found)
+    text = f" But Games–Howell does not tell apart {_listed(fewer, '–')}." if fewer else ""
+    return text + (f" But Games–Howell does tell apart {_listed(more, '–')}." if more else "")
+
+
+def _not_by_games_howell(found: Comparison) -> list[Pair]:
+    return [
+        other
+        for pair, other in zip(found.tukey, found.games_howell)
+        if _differ(pair, found) and other.p is not None and not _differ(other, found)
+    ]
+
+
+def _by_games_howell_alone(found: Comparison) -> list[Pair]:
+    return [
+        other
+        for pair, other in zip(found.tukey, found.games_howell)
+        if pair.p is not None and not _differ(pair, found) and _differ(other, found)
+    ]
+
+
+def _listed(pairs: Sequence[Pair], between: str) -> str:
+    listed = "; ".join(
+        f"{cut(pair.a, 30)}{between}{cut(pair.b, 30)} ({p_equals(pair.p)})" for pair in pairs[:_MOST_PAIRS]
     )
+    return listed + (f"; and {len(pairs) - _MOST_PAIRS} more" if len(pairs) > _MOST_PAIRS else "")
 
 
 def _differ(pair: Pair, found: Comparison) -> bool:
@@ -111,19 +154,35 @@ def _differ(pair: Pair, found: Comparison) -> bool:
 
 
 def _repeatability(report: StudyReport) -> str:
-    own, places, found = pooled_sd_of(report), report.places, report.whole.found
+    own, places, found = scatter_of(report), report.places, report.whole.found
     if own is None:
         return ""
     spreads = [sd for design in report.values.designs if (sd := sd_of(design)) is not None]
     low, high = (number(sd, places).text for sd in (min(spreads), max(spreads)))
-    by_design = f" (pooled; {low} to {high}° by design)" * (low != high)
+    by_design = f"; {low} to {high}° by design" * (low != high)
+    each = ", each with the mean of its cycles," * _has_cycles(report)
     text = (
-        f"Samples of one design scatter about its mean with SD {number(own, places).text}°{by_design}: two samples of a design differ "
-        f"by less than {number(FACTOR * own, places).text}° in 95 % of cases."
+        f"Samples of one design{each} scatter about their mean with SD {number(own.sd_deg, places).text}° "
+        f"({_rests_on(own, report)}{by_design}); the repeatability limit r, 2.8 SD, is {number(own.limit_deg, places).text}°{_doubt(own)}."
     )
     if found is not None and found.repeatability.replicate == "cycle":
         text += f" Cycles of one sample scatter with SD {number(found.repeatability.pooled.s_r, places + 1).text}°."
     return text
+
+
+def _has_cycles(report: StudyReport) -> bool:
+    return any(len(sample.cycles) > 1 for design in report.values.designs for sample in design.counted)
+
+
+def _doubt(own: Scatter) -> str:
+    return "; few degrees of freedom: r is itself uncertain" * (own.df < _FEW)
+
+
+def _rests_on(own: Scatter, report: StudyReport) -> str:
+    """The interval of a scatter and its degrees of freedom; no interval where nothing scatters."""
+    degrees = f"{own.df} {'degree' if own.df == 1 else 'degrees'} of freedom"
+    low, high = (number(end, report.places).text for end in (own.low_deg, own.high_deg))
+    return f"{report.percent} interval {low} to {high}°, {degrees}" if own.sd_deg > 0 else degrees
 
 
 def _simulation(report: StudyReport) -> str:

@@ -16,6 +16,7 @@ def test_the_numbers_are_plain_json_and_those_of_the_values() -> None:
         assert one["mean_deg"] == design.angles_deg.mean() and one["n"] == 5 and one["cycles"] == 15
         assert [sample["angle_deg"] for sample in one["samples"]] == design.angles_deg.tolist()
         assert len(one["curve"]["mean_deg"]) == len(found["curve_pressure_MPa"]) == 36
+    assert found["scatter"]["df"] == 20 and round(found["scatter"]["limit_deg"], 1) == 8.3
     sets = {one["name"]: one for one in found["sets"]}
     assert sets["all"]["anova"]["df"] == [4, 20] and round(sets["all"]["anova"]["F"], 2) == 529.46
     assert set(sets["slw"]) >= {"anova", "welch", "tukey", "games_howell", "groups", "components", "warnings"}

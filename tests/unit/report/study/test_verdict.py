@@ -15,7 +15,8 @@ from benchlab.report.study import differences
 from benchlab.report.study.differences import pairs_table, power_blocks
 from benchlab.report.study.document import study_document
 from benchlab.report.study.pictures import bar_of, bars_blocks, brackets_of, file_names
-from benchlab.report.study.report import StudyReport, interval_of, pooled_sd_of
+from benchlab.report.study.repeatability import components_blocks
+from benchlab.report.study.report import StudyReport, interval_of, scatter_of
 from benchlab.report.study.tables import designs_table, samples_table
 from benchlab.report.study.verdict import verdict_section, verdict_words
 from tests.unit.report import studies
@@ -41,7 +42,11 @@ def test_the_verdict_of_the_papers_study(paper: StudyReport) -> None:
     assert "p = 5.6e-20" in told["All designs."] and "9 of 10 pairs" in told["All designs."]
     assert "tw3_slw20 and tw15_slw10 (p = 0.34)" in told["All designs."]
     assert told["Strip width, tw 3 mm."].endswith("Each of the 3 pairs differs too (Tukey HSD, largest p = 2.2e-5).")
-    assert "SD 3.0°" in told["Repeatability."] and "less than 8.3°" in told["Repeatability."]
+    # sqrt(SS / chi2) with SS = 20 * 8.814, chi2(20): 34.170 and 9.591 (tables): 2.27 and 4.29
+    assert told["Repeatability."].startswith(
+        "Samples of one design, each with the mean of its cycles, scatter about their mean with SD 3.0° (95 % interval 2.3 to 4.3°, "
+        "20 degrees of freedom; 1.7 to 4.0° by design); the repeatability limit r, 2.8 SD, is 8.3°. Cycles"
+    )
     assert (
         told["Simulation."]
         == "Simulated less measured angle is −1.0 to +9.3° (5 designs); mean |error| 4.3°, RMSE 5.2°."
@@ -52,7 +57,11 @@ def test_large_numbers(paper: StudyReport) -> None:
     tiles = verdict_section(paper).blocks[0]
     assert isinstance(tiles, Tiles)
     assert [tile.value for tile in tiles.row] == ["56.7–125.7°", "± 3.0°", "9 of 10", "5.2°"]
-    assert tiles.row[1].note == "two samples differ by less than 8.3° in 95 % of cases"
+    assert tiles.row[1].note == (
+        "95 % interval 2.3 to 4.3°, 20 degrees of freedom; repeatability limit r, 2.8 SD: 8.3°"
+    )
+    assert tiles.row[1].name == "SD between samples of a design, means of cycles"
+    assert tiles.row[2].note == "by Tukey HSD at 0.05, all designs"
     assert tiles.row[0] == Tile("56.7–125.7°", "mean angle at 0.35 MPa", "tw15_slw10 to tw3_slw10")
 
 
@@ -68,7 +77,9 @@ def test_one_design_has_a_repeatability_and_no_comparison() -> None:
     report = studies.report(studies.values((studies.design("a", 50, 2.0),)))
     told = said(report)
     assert told["All designs."].startswith("Not compared: fewer than two designs")
-    assert "SD 2.0°: two samples of a design differ by less than 5.6°" in told["Repeatability."]
+    # chi2(4): 11.143 and 0.4844 (tables): 2 * sqrt(4 / 11.143) = 1.20, 2 * sqrt(4 / 0.4844) = 5.75
+    assert "SD 2.0° (95 % interval 1.2 to 5.7°, 4 degrees of freedom); the rep" in told["Repeatability."]
+    assert told["Repeatability."].endswith("is 5.6°; few degrees of freedom: r is itself uncertain.")
     assert not [section for section in study_document(report).sections if section.title == "Do they differ?"]
 
 
@@ -136,9 +147,64 @@ def test_tests_and_pairs_against_scipy(paper: StudyReport) -> None:
 
 
 def test_pooled_sd_is_the_one_of_the_comparison(paper: StudyReport) -> None:
-    assert paper.whole.found is not None
-    assert pooled_sd_of(paper) == pytest.approx(paper.whole.found.repeatability.sample_sd, rel=1e-12)
-    assert pooled_sd_of(paper) == pytest.approx(math.sqrt(np.mean([1.9**2, 4.0**2, 3.6**2, 1.7**2, 2.9**2])), rel=1e-12)
+    own = scatter_of(paper)
+    assert paper.whole.found is not None and own is not None
+    assert own.sd_deg == pytest.approx(paper.whole.found.repeatability.sample_sd, rel=1e-12)
+    assert own.sd_deg == pytest.approx(math.sqrt(np.mean([1.9**2, 4.0**2, 3.6**2, 1.7**2, 2.9**2])), rel=1e-12)
+    low, high = stats.chi2.interval(0.95, 20)
+    assert (own.low_deg, own.high_deg) == pytest.approx(
+        (own.sd_deg * math.sqrt(20 / high), own.sd_deg * math.sqrt(20 / low)), rel=1e-12
+    )
+    assert own.limit_deg == 2.8 * own.sd_deg and own.df == 20
+
+
+def test_one_degree_of_freedom_promises_nothing() -> None:
+    """chi2(1): 5.0239 and 0.00098207 (tables), so that an SD of 2 may be 0.9 to 63.8."""
+    report = studies.report(studies.values((studies.design("a", 50, 2.0, samples=2, cycles=1),)))
+    text = said(report)["Repeatability."]
+    assert "SD 2.0° (95 % interval 0.9 to 63.8°, 1 degree of freedom)" in text and "itself uncertain" in text
+    assert "cycles" not in text and "95 % of cases" not in text
+    tiles = verdict_section(report).blocks[0]
+    assert isinstance(tiles, Tiles) and "1 degree of freedom;" in tiles.row[1].note
+    assert "itself uncertain" in tiles.row[1].note
+
+
+def test_the_table_of_components_says_which_sd_is_which(paper: StudyReport) -> None:
+    nested = next(block for block in components_blocks(paper) if isinstance(block, Table))
+    single = next(
+        block for block in components_blocks(studies.report(studies.paper_study(cycles=1))) if isinstance(block, Table)
+    )
+    assert "The verdict has another SD and limit" in nested.note and "variance component" in nested.note
+    assert (
+        "another" not in single.note and "uncertain themselves" in nested.note and "uncertain themselves" in single.note
+    )
+
+
+def test_where_games_howell_disagrees_the_verdict_says_so_at_once() -> None:
+    """Two designs that scatter little and one much: the pooled scatter of Tukey tells apart what Games–Howell does not."""
+    designs = (
+        studies.design("flat", 20, 0.5), studies.design("straight", 58, 0.5), studies.design("helix", 50, 6.0, samples=3),
+    )  # fmt: skip
+    report = studies.report(studies.values(designs))
+    assert report.whole.found is not None
+    pairs = [(one.p, other.p) for one, other in zip(report.whole.found.tukey, report.whole.found.games_howell)]
+    unlike = [other for one, other in pairs if one is not None and other is not None and one < 0.05 <= other]
+    assert len(unlike) == 1
+    text, tiles = said(report)["All designs."], verdict_section(report).blocks[0]
+    assert text.endswith(f" But Games–Howell does not tell apart straight–helix (p = {unlike[0]:.2g}).")
+    assert isinstance(tiles, Tiles)
+    (tile,) = [tile for tile in tiles.row if tile.name == "pairs of designs told apart"]
+    assert tile.note == "by Tukey HSD at 0.05, all designs; 1 of them not by Games–Howell"
+
+
+def test_where_games_howell_alone_tells_apart_it_is_said_too() -> None:
+    designs = (studies.design("a", 50, 0.3), studies.design("b", 52, 0.3), studies.design("wild", 60, 12.0))
+    report = studies.report(studies.values(designs))
+    assert " But Games–Howell does tell apart a–b (p" in said(report)["All designs."]
+    tiles = verdict_section(report).blocks[0]
+    assert isinstance(tiles, Tiles)
+    (tile,) = [tile for tile in tiles.row if tile.name == "pairs of designs told apart"]
+    assert tile.note.endswith("; 1 more by Games–Howell")
 
 
 def test_brackets_carry_the_stars_of_tukeys_p(paper: StudyReport) -> None:
