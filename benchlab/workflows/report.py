@@ -8,7 +8,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from benchlab.errors import BenchlabError
+from benchlab.errors import BenchlabError, UsageError
 from benchlab.io.published import PublishedAngle, published_angles
 from benchlab.io.study_file import Study, read_study
 from benchlab.io.study_values import StudySet, StudyValues
@@ -45,6 +45,11 @@ def report(
     check_options(confidence, difference_deg)
     if pdf:
         check_pdf()
+    if out.resolve() == asked.path.parent.resolve():
+        hint = f"give a folder of its own, as --out {out / 'report'}"
+        raise UsageError(
+            "is the folder of the study: a report does not mix its files with its data", file=out, hint=hint
+        )
     outputs = ReportOutputs(out, "report", overwrite, names=(PAGE, *[PDF] * pdf, NUMBERS))
     read = tuple(_read_by(asked))
     outputs.check(overlay=False, inputs=read)

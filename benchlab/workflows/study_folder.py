@@ -18,10 +18,13 @@ from benchlab.io.stills import natural_key
 from benchlab.io.study_parts import RUN_SUFFIXES, TABLE_SUFFIXES
 from benchlab.io.sweep_file import SCHEMA as SWEEP
 from benchlab.workflows.recordings import VIDEOS
-from benchlab.workflows.report_outputs import NUMBERS
+from benchlab.workflows.report_outputs import NUMBERS, PAGE
 from benchlab.workflows.study_values import RECORDINGS
 
 MOST_FILES = 20_000
+
+WRITTEN = frozenset([RECORDINGS, "tables", "figures"])
+"""Folders that a report writes beside its page."""
 
 
 @dataclass
@@ -75,10 +78,9 @@ def _paths(folder: Path, found: Contents) -> Iterator[Path]:
         if count > MOST_FILES:
             what = f"holds more than {MOST_FILES} files"
             raise InputError(what, file=folder, hint="give the folder of the study alone")
-        if NUMBERS in names and RECORDINGS in folders:
-            found.unused.append((Path(at), "a report of benchlab"))
-            folders[:] = []
-            continue
+        if {PAGE, NUMBERS} <= set(names):
+            found.unused += [(Path(at, name), "written by a report of benchlab") for name in folders if name in WRITTEN]
+            folders[:] = [name for name in folders if name not in WRITTEN]
         suffixes = {Path(name).suffix.lower() for name in names}
         if suffixes & PICTURES and not suffixes & (VIDEOS | RUN_SUFFIXES) and Path(at) != folder:
             yield Path(at)

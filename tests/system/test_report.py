@@ -186,13 +186,27 @@ def test_a_report_json_of_others_vouches_for_nothing(study: Path, benchlab: Call
 
 
 def test_a_file_of_the_study_is_never_replaced(study: Path, benchlab: Callable[..., Done]) -> None:
-    (study / "tables").mkdir()
-    (study / "wide.csv").rename(study / "tables" / "values.csv")
-    (study / "study.yaml").write_text(STUDY.replace("wide.csv", "tables/values.csv"))
-    before = (study / "tables" / "values.csv").read_bytes()
-    done = benchlab("report", study, "--out", study, "--overwrite")
+    out = study / "out"
+    (out / "tables").mkdir(parents=True)
+    (study / "wide.csv").rename(out / "tables" / "values.csv")
+    (study / "study.yaml").write_text(STUDY.replace("wide.csv", "out/tables/values.csv"))
+    before = (out / "tables" / "values.csv").read_bytes()
+    done = benchlab("report", study, "--out", out, "--overwrite")
     assert done.code == 2 and "is read by this" in done.err
-    assert (study / "tables" / "values.csv").read_bytes() == before
+    assert (out / "tables" / "values.csv").read_bytes() == before
+
+
+@pytest.mark.parametrize("spelled", [".", "out/..", "link"])
+def test_the_folder_of_the_study_is_no_place_for_its_report(
+    study: Path, benchlab: Callable[..., Done], spelled: str
+) -> None:
+    (study / "out").mkdir()
+    (study / "link").symlink_to(study, target_is_directory=True)
+    before = sorted(study.iterdir())
+    for asked in (study, study / "study.yaml"):
+        done = benchlab("report", asked, "--out", study / spelled, "--overwrite")
+        assert done.code == 2 and "is the folder of the study" in done.err and "report" in done.err
+    assert sorted(study.iterdir()) == before
 
 
 def test_interrupted_it_keeps_what_is_done(

@@ -242,6 +242,19 @@ def test_new_lists_many_files_shortly(bench: Path, benchlab: Callable) -> None:
     assert (bench / "study.yaml").read_text().count("#   log") == 30
 
 
+def test_new_passes_over_what_a_report_wrote_and_no_more(bench: Path, benchlab: Callable) -> None:
+    assert benchlab("study", "new", bench).code == 0
+    alone = benchlab("study", "new", bench, "--overwrite", "--json").json["designs"]
+    assert benchlab("report", bench, "--out", bench / "out").code == 0
+    for path in (bench / "out").iterdir():  # as if it had been written beside the tables
+        path.rename(bench / path.name)
+    (bench / "out").rmdir()
+    found = benchlab("study", "new", bench, "--overwrite", "--json").json
+    assert found["designs"] == alone
+    written = {each["file"] for each in found["unused"] if each["why"] == "written by a report of benchlab"}
+    assert {"tables", "figures"} <= written <= {"tables", "figures", "recordings"}
+
+
 def test_new_finds_run_files_simulations_and_force_files_by_content(
     bench: Path, drawn_clip: Path, benchlab: Callable, tmp_path: Path
 ) -> None:
@@ -254,7 +267,8 @@ def test_new_finds_run_files_simulations_and_force_files_by_content(
     for name in ("tw3_slw5_a1", "tw3_slw10_s1", "tw9_slw5_a1", "odd"):
         shutil.copy(SAMPLE / "force/tw3_slw10_a1.csv", bench / "force" / f"{name}.csv")
     (bench / "out/recordings/tw3_slw5/s9").mkdir(parents=True)
-    (bench / "out/report.json").write_text("{}")
+    for name in ("report.json", "report.html"):
+        (bench / "out" / name).write_text("{}")
     (bench / "out/recordings/tw3_slw5/s9/tw3_slw5_s9.csv").write_text("cycle,angle_deg\n1,5\n")
     found = benchlab("study", "new", bench, "--json").json
     five, ten = found["designs"]
@@ -262,7 +276,7 @@ def test_new_finds_run_files_simulations_and_force_files_by_content(
     assert five["simulated"].startswith("sim/") and five["simulated"].endswith(".h5") and ten["simulated"] is None
     assert (five["force"], ten["force"]) == (["force/tw3_slw5_a1.csv"], ["force/tw3_slw10_s1.csv"])
     why = {each["file"]: each["why"] for each in found["unused"]}
-    assert why["out"] == "a report of benchlab"
+    assert why["out/recordings"] == "written by a report of benchlab"
     assert "taken for its table" in why["tw3_slw5_s3.csv"]
     assert why["force/tw9_slw5_a1.csv"] == "a force file of tw9_slw5, of which there is no recording"
     assert "not named as a force file" in why["force/odd.csv"]
