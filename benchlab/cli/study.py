@@ -14,6 +14,9 @@ from benchlab.errors import BatchError, counted, printable
 MOST_LINES = 20
 """Files that are not in the study and are listed on the terminal."""
 
+FROM = {"option": "", "ramp": ", the largest of --ramp", "default": ", which is the default (--pressure-MPa)"}
+"""What told the pressure of comparison, in words."""
+
 MARKS = {"found": "", "missing": "!", "left out": "-"}
 WORDS = {"missing": "missing", "left_out": "left out", "notes": "note"}
 
@@ -103,7 +106,7 @@ def _tell_new(found: dict[str, Any], chosen: bool) -> None:
         click.echo(f"  and {len(found['unused']) - MOST_LINES} more not in it, at the end of the file", err=True)
     if not found["pressure_known"]:
         click.echo("  the pressure is not known: give it in the file, or with --ramp or --pressure", err=True)
-    click.echo(f"  compared at {found['pressure_MPa']:g} MPa", err=True)
+    click.echo(f"  compared at {found['pressure_MPa']:g} MPa{FROM[found['pressure_MPa_from']]}", err=True)
     click.echo(f"  wrote {printable(found['study'])}; `benchlab study check` lists what is missing", err=True)
 
 
@@ -167,4 +170,20 @@ def _tell_check(found: dict[str, Any]) -> None:
         count = len(found["missing"])
         click.echo(f"benchlab: {count} {'thing is' if count == 1 else 'things are'} missing (above)", err=True)
     else:
-        click.echo(f"complete: all recordings reach {found['pressure_MPa']:g} MPa as far as is told", err=True)
+        click.echo(f"complete: {_reached(found)}", err=True)
+
+
+def _reached(found: dict[str, Any]) -> str:
+    """Which recordings are known to reach the pressure of the study: not those that tell none."""
+    states = [
+        recording
+        for design in found["designs"]
+        for sample in design["samples"]
+        for recording in sample["recordings"]
+        if recording["state"] == "found"
+    ]
+    telling = sum(not recording["without_pressure"] for recording in states)
+    if not telling:
+        return "nothing is missing"
+    which = "all recordings reach" if telling == len(states) else "all other recordings reach"
+    return f"{which} {found['pressure_MPa']:g} MPa as far as is told"

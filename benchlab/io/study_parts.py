@@ -45,7 +45,12 @@ def _stated(text: str) -> str:
     return text.strip()
 
 
-def _name(text: str) -> str:
+def named(text: str) -> str:
+    """A text that can be the name of a design or a sample, as it is. Raises ValueError for any other.
+
+    >>> named("tw3_slw10")
+    'tw3_slw10'
+    """
     if not text or len(text) > MAX_NAME or not text.isprintable() or _NOT_IN_NAMES.search(text):
         raise ValueError(f'name it in 1 to {MAX_NAME} characters, without / \\ : * ? " < > |')
     if text != text.strip() or text != text.strip("."):
@@ -53,7 +58,7 @@ def _name(text: str) -> str:
     return text
 
 
-Name = Annotated[str, AfterValidator(_name)]
+Name = Annotated[str, AfterValidator(named)]
 Words = Annotated[str, AfterValidator(_stated)]
 File = Annotated[str, Field(min_length=1)]
 Pressure = Annotated[float, Field(gt=0, le=MAX_PRESSURE_MPA)]

@@ -38,7 +38,8 @@ class DesignDraft:
 
 @dataclass(frozen=True)
 class StudyDraft:
-    """What a new study file says. analysis: of all recordings. remarks: on its sets. unused: files and why they are not in it."""
+    """What a new study file says. analysis: of all recordings. remarks: on its sets. unused: files and why they are not in it.
+    pressure_told: whether pressure_MPa was told, or is the default."""
 
     title: str
     pressure_MPa: float
@@ -47,6 +48,7 @@ class StudyDraft:
     sets: Sequence[StudySet] = ()
     notes: str = ""
     unused: Sequence[tuple[str, str]] = ()
+    pressure_told: bool = True
 
     @property
     def pressure_known(self) -> bool:
@@ -85,7 +87,8 @@ def study_text(draft: StudyDraft, name: str = "study.yaml") -> str:
     lines += ["", f"title: {_scalar(draft.title)}"]
     if draft.notes:
         lines += ["notes: >-", *(f"  {line}" for line in textwrap.wrap(draft.notes, 110, break_on_hyphens=False))]
-    lines += [f"pressure_MPa: {draft.pressure_MPa:.9g}  # at which the designs are compared", ""]
+    default = "" if draft.pressure_told else "; this is the default, nothing told it: make it yours"
+    lines += [f"pressure_MPa: {draft.pressure_MPa:.9g}  # at which the designs are compared{default}", ""]
     lines += _analysis(draft.analysis)
     if not draft.pressure_known:
         lines += [

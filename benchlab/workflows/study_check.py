@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from benchlab.errors import BenchlabError
+from benchlab.errors import BenchlabError, counted
 from benchlab.io.lens_file import read_lens
 from benchlab.io.pressure import ramp, read_pressure
 from benchlab.io.study_file import Study, StudyDesign, StudyRecording, StudySample, read_study
@@ -18,7 +18,7 @@ from benchlab.io.study_values import ALL_DESIGNS, Missing
 from benchlab.workflows.measure import open_source
 from benchlab.workflows.outputs import content_hash
 from benchlab.workflows.study_force import force_of
-from benchlab.workflows.study_readings import Target
+from benchlab.workflows.study_readings import STATED, Target
 from benchlab.workflows.study_recordings import Place, StudyItem, analyze_settings, read_item, reason_for, study_items
 from benchlab.workflows.study_values import simulated_or_missing
 
@@ -28,10 +28,11 @@ FEWEST = 2
 
 @dataclass(frozen=True)
 class _Checked:
-    """One recording or force file: what is wrong with it, "" for nothing."""
+    """One recording: what is wrong with it, "" for nothing. stated: it has angles and no pressure, so they are its maker's word."""
 
     item: StudyItem
     wrong: str
+    stated: bool = False
 
 
 def check_study(path: Path) -> dict[str, Any]:
@@ -42,11 +43,12 @@ def check_study(path: Path) -> dict[str, Any]:
     """
     study = read_study(path)
     target = Target.of(study.pressure_MPa, study.hold_tolerance_MPa)
-    checked = {item.place: _Checked(item, _wrong(item, target)) for item in study_items(study, Path())}
+    checked = {item.place: _checked(item, target) for item in study_items(study, Path())}
     missing: list[Missing] = []
     left_out: list[Missing] = []
     designs = [_design(design, checked, study, missing, left_out) for design in study.designs]
     missing += _copies(study, checked)
+    counts = {design["name"]: design["n"] for design in designs}
     return {
         "study": str(path),
         "title": study.title,
@@ -55,7 +57,7 @@ def check_study(path: Path) -> dict[str, Any]:
         "sets": [{"name": chosen.name, "designs": list(chosen.designs)} for chosen in study.sets],
         "missing": [_told(each) for each in missing],
         "left_out": [_told(each) for each in left_out],
-        "notes": [_told(each) for each in _notes(study, {design["name"]: design["n"] for design in designs})],
+        "notes": [_told(each) for each in (*_stated(study, designs), *_notes(study, counts))],
     }
 
 
@@ -100,7 +102,13 @@ def _sample(
             wrong.append(Missing(each.wrong, design.name, sample.name, recording.file))
         state = "left out" if why else "missing" if each.wrong else "found"
         recordings.append(
-            {"file": recording.file, "kind": recording.kind, "state": state, "why": why or each.wrong or None}
+            {
+                "file": recording.file,
+                "kind": recording.kind,
+                "state": state,
+                "why": why or each.wrong or None,
+                "without_pressure": each.stated,
+            }
         )
     counted = [each for each in recordings if each["state"] != "left out"]
     if sample.left_out:
@@ -113,15 +121,16 @@ def _sample(
     return {"name": sample.name, "state": state, "recordings": recordings, "counts": counts}
 
 
-def _wrong(item: StudyItem, target: Target) -> str:
-    """Why a recording will have no value, as far as can be told without analysing it; "" for no reason."""
+def _checked(item: StudyItem, target: Target) -> _Checked:
+    """Why a recording will have no value, as far as can be told without analysing it, and whether its pressure is told."""
     try:
         if item.recording.kind == "video":
-            return _wrong_video(item.recording, target)
+            return _Checked(item, _wrong_video(item.recording, target))
         cycles = read_item(item, target, overwrite=False)["readings"].cycles
     except BenchlabError as error:
-        return reason_for(error, item.recording.path)
-    return "; ".join(dict.fromkeys(cycle.flag for cycle in cycles if not cycle.known))
+        return _Checked(item, reason_for(error, item.recording.path))
+    wrong = "; ".join(dict.fromkeys(cycle.flag for cycle in cycles if not cycle.known))
+    return _Checked(item, wrong, any(cycle.method == STATED for cycle in cycles))
 
 
 def _wrong_video(recording: StudyRecording, target: Target) -> str:
@@ -177,6 +186,17 @@ def _size(path: Path) -> int:
     """Bytes in a file or in the files of a folder; 0 for what cannot be read."""
     files = [each for each in path.iterdir() if each.is_file()] if path.is_dir() else [path]
     return sum(each.stat().st_size for each in files if each.is_file() and os.access(each, os.R_OK))
+
+
+def _stated(study: Study, designs: list[dict[str, Any]]) -> Iterator[Missing]:
+    """The tables of angles without a pressure that count, in one note."""
+    recordings = [each for design in designs for sample in design["samples"] for each in sample["recordings"]]
+    files = {each["file"] for each in recordings if each["without_pressure"] and each["state"] == "found"}
+    if files:
+        yield Missing(
+            f"{counted(len(files), 'table')} of angles without a pressure: the angles are taken as those at "
+            f"{study.pressure_MPa:g} MPa, on the maker's word"
+        )
 
 
 def _notes(study: Study, counts: dict[str, int]) -> Iterator[Missing]:

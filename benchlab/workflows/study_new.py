@@ -16,14 +16,16 @@ from benchlab.io.files import check_new_file, check_regular_file
 from benchlab.io.pressure import MAX_PRESSURE_MPA, ramp
 from benchlab.io.stills import natural_key
 from benchlab.io.study_file import STUDY_FILE, StudyDesign, StudySimulated
+from benchlab.io.study_parts import named
 from benchlab.io.study_text import DesignDraft, StudyDraft, write_study
 from benchlab.workflows.study_folder import Contents, look_into
-from benchlab.workflows.study_pattern import NamePattern, choose_pattern
+from benchlab.workflows.study_pattern import NameParts, NamePattern, choose_pattern
 from benchlab.workflows.study_sets import proposed_sets
 from benchlab.workflows.study_simulated import simulated_of
 
 PRESSURE_MPA = 0.35
 FORCE_PATTERNS = ("{design}_a{sample}", "{design}-a{sample}", "{design}_actuator{sample}")
+RENAME = "rename the file"
 
 _SHELL = re.compile(r"tw(\d+(?:\.\d+)?)[_-]slw(\d+(?:\.\d+)?)", re.ASCII | re.IGNORECASE)
 
@@ -37,6 +39,11 @@ class NewStudy:
     pressure_MPa: float | None = None
     ramp: str | None = None
     pressure: Path | None = None
+
+    @property
+    def at_from(self) -> str:
+        """What tells the pressure of comparison: "option", "ramp", or "default" where nothing does."""
+        return "option" if self.pressure_MPa is not None else "ramp" if self.ramp else "default"
 
     @property
     def at_MPa(self) -> float:
@@ -72,6 +79,7 @@ def new_study(folder: Path, out: Path | None, wish: NewStudy, overwrite: bool = 
         "study": str(path),
         "title": study.title,
         "pressure_MPa": study.pressure_MPa,
+        "pressure_MPa_from": wish.at_from,
         "pattern": pattern,
         "recordings": sum(len(sample.recordings) for design in study.designs for sample in design.samples),
         "designs": [_told(design) for design in study.designs],
@@ -90,14 +98,19 @@ def _draft(folder: Path, base: Path, contents: Contents, wish: NewStudy) -> tupl
         pattern = NamePattern(wish.pattern) if wish.pattern else choose_pattern(list(names.values()))
     except InputError as error:
         raise InputError(error.what, file=folder, hint=error.hint) from None
-    unused = list(contents.unused)
+    unused, refused = list(contents.unused), list[tuple[Path, str]]()
     samples: dict[str, dict[str, list[tuple[str, Path]]]] = defaultdict(lambda: defaultdict(list))
     for path, name in names.items():
         parts = pattern.read(name)
         if parts is None or not _is_text(path):
             unused.append((path, f"its name does not fit {pattern.text}" if _is_text(path) else "its name is not text"))
+        elif why := _no_name(parts):
+            unused.append((path, f"{why}; {RENAME}"))
+            refused.append((path, why))
         else:
             samples[parts.design][parts.sample].append((parts.cycle, path))
+    if not samples and refused:
+        raise InputError(refused[0][1], file=refused[0][0], hint=RENAME)
     if not samples:
         what = f"no recording is named as {pattern.text}: there are {', '.join(map(repr, list(names.values())[:3]))}"
         raise InputError(what, file=folder, hint="give another --pattern")
@@ -120,6 +133,7 @@ def _draft(folder: Path, base: Path, contents: Contents, wish: NewStudy) -> tupl
     return pattern.text, StudyDraft(
         title=wish.title or folder.absolute().name,
         pressure_MPa=wish.at_MPa,
+        pressure_told=wish.at_from != "default",
         analysis=analysis,
         designs=designs,
         sets=proposed_sets({d.name: d.shell for d in designs if d.shell}),
@@ -147,6 +161,16 @@ def _force(
         else:
             found[parts.design].append(path)
     return found
+
+
+def _no_name(parts: NameParts) -> str:
+    """Why a study could not call its design or sample so; "" for no reason."""
+    for what, text in (("design", parts.design), ("sample", parts.sample)):
+        try:
+            named(text)
+        except ValueError as error:
+            return f"a {what} cannot be called {text!r} ({error})"
+    return ""
 
 
 def _shell(name: str) -> ShellDesign | None:

@@ -20,6 +20,9 @@ from benchlab.vision.series import SURE_FLAGS
 CURVE_POINTS = 36
 """Pressures of a curve, from 0 to the study's."""
 
+STATED = "table"
+"""Method of an angle of a table without pressure: its maker says that it is at the study's."""
+
 NO_PRESSURE = "its pressure is not known"
 
 
@@ -125,7 +128,7 @@ def _of_table(table: AngleTable, target: Target) -> Readings:
 def _stated(number: int, angle: float, sd: float) -> CycleValue:
     if not math.isfinite(angle):
         return CycleValue(number, math.nan, flag="no angle in the table")
-    return CycleValue(number, round(float(angle), 6), round(float(sd), 6), "table")
+    return CycleValue(number, round(float(angle), 6), round(float(sd), 6), STATED)
 
 
 def _without(why: str, target: Target, warnings: Sequence[str]) -> Readings:

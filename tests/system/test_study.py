@@ -242,19 +242,6 @@ def test_new_lists_many_files_shortly(bench: Path, benchlab: Callable) -> None:
     assert (bench / "study.yaml").read_text().count("#   log") == 30
 
 
-def test_new_passes_over_what_a_report_wrote_and_no_more(bench: Path, benchlab: Callable) -> None:
-    assert benchlab("study", "new", bench).code == 0
-    alone = benchlab("study", "new", bench, "--overwrite", "--json").json["designs"]
-    assert benchlab("report", bench, "--out", bench / "out").code == 0
-    for path in (bench / "out").iterdir():  # as if it had been written beside the tables
-        path.rename(bench / path.name)
-    (bench / "out").rmdir()
-    found = benchlab("study", "new", bench, "--overwrite", "--json").json
-    assert found["designs"] == alone
-    written = {each["file"] for each in found["unused"] if each["why"] == "written by a report of benchlab"}
-    assert {"tables", "figures"} <= written <= {"tables", "figures", "recordings"}
-
-
 def test_new_finds_run_files_simulations_and_force_files_by_content(
     bench: Path, drawn_clip: Path, benchlab: Callable, tmp_path: Path
 ) -> None:
