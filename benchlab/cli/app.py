@@ -28,7 +28,25 @@ from benchlab.errors import BenchlabError, printable
 EXIT_BUG, EXIT_INTERRUPTED = 1, 130
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110})
+class NobodyReadsError(Exception):
+    """Whoever read our output has gone."""
+
+
+class Commands(click.Group):
+    """Commands whose broken pipes are told apart from errors: click and rich leave with 1 for them."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            return super().invoke(ctx)
+        except BrokenPipeError as error:
+            raise NobodyReadsError from error
+        except SystemExit as left:
+            if isinstance(left.__context__, BrokenPipeError):
+                raise NobodyReadsError from left
+            raise
+
+
+@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110})
 @click.version_option(benchlab.__version__, prog_name="benchlab")
 @click.option("--debug", is_flag=True, help="Show the traceback of an error.")
 def cli(debug: bool) -> None:
@@ -89,8 +107,8 @@ def run(arguments: list[str] | None = None) -> None:
     except (click.Abort, KeyboardInterrupt):
         click.echo("benchlab: interrupted", err=True)
         code = EXIT_INTERRUPTED
-    except BrokenPipeError:
-        # Whoever read our output has gone; there is nobody left to tell.
+    except (BrokenPipeError, NobodyReadsError):
+        # There is nobody left to tell.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 0
     except Exception as error:

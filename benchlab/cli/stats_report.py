@@ -24,12 +24,8 @@ def print_report(found: StatsFound) -> None:
     """To standard output. Wide tables are not broken where nobody looks at a terminal."""
     from rich.console import Console
 
-    class Piped(Console):
-        def on_broken_pipe(self) -> None:
-            raise BrokenPipeError  # rich would leave with 1
-
     comparison, columns = found.comparison, found.document["columns"]
-    console = Piped(highlight=False, emoji=False)
+    console = Console(highlight=False, emoji=False)
     console.width = max(console.width, 80) if console.is_terminal else 160
     samples = sum(group.n for group in comparison.groups)
     what = cut(columns.get("value") or columns.get("mean"), 60)
