@@ -192,7 +192,7 @@ def _peaks(actuator: dict[str, Any]) -> str:
     if not zero["flat_rests"]:
         return f"{counted(len(peaks), 'cycle')}; largest reading {actuator['largest_reading_N']:.4g} N; nowhere at rest"
     drift = "" if zero["slope_N_per_s"] is None else f", drifting {60 * zero['slope_N_per_s']:+.2g} N/min"
-    cycles = f"{len(peaks)} cycle{'s' * (len(peaks) != 1)} by {actuator['inferred']['cycles']}"
+    cycles = f"{counted(len(peaks), 'cycle')} by {actuator['inferred']['cycles']}"
     return f"{cycles}; {span}{' (≥)' * bound}; zero {zero['first_N']:.3g} N{drift}, taken off"
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from benchlab.report.document import NONE, Cell, Column, Table, cut
-from benchlab.report.rounding import count, decimals_of, digits, number, words
+from benchlab.report.rounding import count, decimals_of, digits, number, probability, words
 from benchlab.stats.comparison import Comparison
 from benchlab.stats.comparison_json import mean_interval
 from benchlab.stats.components import Component
 from benchlab.stats.pairs import Pair
 from benchlab.stats.power import WANTED, Power
-from benchlab.stats.wording import STARS_LEGEND, p_text, stars
+from benchlab.stats.wording import STARS_LEGEND, stars
 
 
 def comparison_tables(found: Comparison, value: str) -> Iterator[Table]:
@@ -74,7 +74,7 @@ def _test(
     text = NONE if value is None else f"{letter} = {digits(value, 5).text}"
     return (
         words(name), Cell(letter, letter), digits(value, 5), Cell(None, text), digits(a), digits(b),
-        Cell(None, "" if a is None or b is None else f"{a:g}, {b:.4g}"), Cell(p, NONE if p is None else p_text(p, 0.0)),
+        Cell(None, "" if a is None or b is None else f"{a:g}, {b:.4g}"), probability(p, 0.0),
         Cell(note, ""), words(note, 90),
     )  # fmt: skip
 
@@ -100,9 +100,9 @@ def _pair(one: Pair, other: Pair, places: int) -> tuple[Cell, ...]:
     note = "; ".join(dict.fromkeys([*reasons, *floored]))
     return (
         words(one.a), words(one.b), Cell(None, f"{cut(one.b, 24)} − {cut(one.a, 24)}"), number(one.difference, places),
-        number(one.low, places), number(one.high, places), _span(one.low, one.high, places), _p(one.p), words(marks),
-        Cell(None, f"{_p(one.p).text} {marks}".strip()),
-        number(other.low, places), number(other.high, places), _span(other.low, other.high, places), _p(other.p),
+        number(one.low, places), number(one.high, places), _span(one.low, one.high, places), probability(one.p), words(marks),
+        Cell(None, f"{probability(one.p).text} {marks}".strip()),
+        number(other.low, places), number(other.high, places), _span(other.low, other.high, places), probability(other.p),
         digits(one.g), digits(one.g_low), digits(one.g_high), _digits_span(one.g_low, one.g_high), words(note),
     )  # fmt: skip
 
@@ -188,10 +188,6 @@ def power_table(power: Power, value: str, places: int) -> Table:
         "differ by so much and all others lie midway, the least that it can see. n: samples in each group."
     )
     return Table("power", "The smallest difference that such a comparison sees", tuple(columns), tuple(rows), note)
-
-
-def _p(p: float | None) -> Cell:
-    return Cell(p, NONE if p is None else p_text(p))
 
 
 def _span(low: float | None, high: float | None, places: int) -> Cell:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 
 from benchlab.report.document import NONE, Cell, cut
+from benchlab.stats.studentized_range import FLOOR
+from benchlab.stats.wording import p_text
 
 
 def decimals_of(uncertainty: float | None) -> int:
@@ -51,3 +53,8 @@ def count(value: int | None) -> Cell:
 def words(text: str, length: int = 60) -> Cell:
     """A text, shown cut and with control characters escaped; whole in the CSV file."""
     return Cell(text, cut(text, length))
+
+
+def probability(p: float | None, floor: float = FLOOR) -> Cell:
+    """A probability as the page shows it; below the floor only that it is below (for pairs: 1e-13, noise from there on)."""
+    return Cell(None, NONE) if p is None else Cell(p, p_text(p, floor))

@@ -63,3 +63,13 @@ def benchlab(capfd: pytest.CaptureFixture[str]) -> Callable[..., Done]:
 def drawn_clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """One film for all tests that only read it."""
     return draw_clip(tmp_path_factory.mktemp("films") / "trial.mp4")
+
+
+@pytest.fixture
+def bench(tmp_path: Path) -> Path:
+    """A folder with two designs, two samples each, as tables, which are the quickest of recordings."""
+    folder = tmp_path / "bench"
+    folder.mkdir()
+    for index, name in enumerate(("tw3_slw5_s1", "tw3_slw5_s2", "tw3_slw10_s1", "tw3_slw10_s2")):
+        (folder / f"{name}.csv").write_text(f"cycle,angle_deg\n1,{50 + index}\n2,{51 + index}\n")
+    return folder

@@ -16,16 +16,6 @@ from tests.conftest import write_clip
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_data"
 
 
-@pytest.fixture
-def bench(tmp_path: Path) -> Path:
-    """A folder with two designs, two samples each, as tables, which are the quickest of recordings."""
-    folder = tmp_path / "bench"
-    folder.mkdir()
-    for index, name in enumerate(("tw3_slw5_s1", "tw3_slw5_s2", "tw3_slw10_s1", "tw3_slw10_s2")):
-        (folder / f"{name}.csv").write_text(f"cycle,angle_deg\n1,{50 + index}\n2,{51 + index}\n")
-    return folder
-
-
 def test_new_makes_the_study_of_the_sample_data_but_for_its_words(tmp_path: Path, benchlab: Callable) -> None:
     shutil.copytree(SAMPLE, tmp_path / "sample_data", ignore=shutil.ignore_patterns("*.overlay.mp4"))
     folder = tmp_path / "sample_data"

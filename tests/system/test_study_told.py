@@ -8,16 +8,6 @@ from pathlib import Path
 import pytest
 
 
-@pytest.fixture
-def bench(tmp_path: Path) -> Path:
-    """A folder with two designs, two samples each, as tables, which are the quickest of recordings."""
-    folder = tmp_path / "bench"
-    folder.mkdir()
-    for index, name in enumerate(("tw3_slw5_s1", "tw3_slw5_s2", "tw3_slw10_s1", "tw3_slw10_s2")):
-        (folder / f"{name}.csv").write_text(f"cycle,angle_deg\n1,{50 + index}\n2,{51 + index}\n")
-    return folder
-
-
 def test_new_goes_on_without_files_whose_names_cannot_be_those_of_designs(bench: Path, benchlab: Callable) -> None:
     (bench / "Beta <script>_s1.csv").write_text("cycle,angle_deg\n1,5\n")
     (bench / f"{'x' * 81}_s1.csv").write_text("cycle,angle_deg\n1,6\n")

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from benchlab.report.document import NONE, Block, Cell, Column, Table, Words, cut
-from benchlab.report.rounding import count, digits, number, words
-from benchlab.report.study.report import ComparedSet, StudyReport, found_sets, joined, name_of, probability, span_text
+from benchlab.report.rounding import count, digits, number, probability, words
+from benchlab.report.study.report import ComparedSet, StudyReport, found_sets, joined, name_of, span_text
 from benchlab.stats.comparison import Comparison
 from benchlab.stats.pairs import Pair
 from benchlab.stats.power import WANTED

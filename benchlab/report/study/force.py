@@ -11,9 +11,9 @@ from benchlab.io.published import BLOCKED_FORCE
 from benchlab.io.study_values import DesignValues
 from benchlab.report.document import NONE, Block, Cell, Column, Pictures, Section, Table, Words, cut
 from benchlab.report.force_figure import draw_force_panel, linearity_words, places_of
-from benchlab.report.rounding import count, decimals_of, digits, number, words
+from benchlab.report.rounding import count, decimals_of, digits, number, probability, words
 from benchlab.report.study.pictures import file_names
-from benchlab.report.study.report import StudyReport, probability, span_text
+from benchlab.report.study.report import StudyReport, span_text
 from benchlab.report.svg import panel_of
 from benchlab.stats.comparison import compare_summaries
 from benchlab.stats.wording import p_equals

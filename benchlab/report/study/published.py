@@ -10,8 +10,8 @@ from benchlab.actuator import ShellDesign
 from benchlab.io.published import PublishedAngle
 from benchlab.io.study_values import DesignValues
 from benchlab.report.document import NONE, Block, Cell, Column, Section, Table, Words, cut
-from benchlab.report.rounding import count, number, words
-from benchlab.report.study.report import PublishedSet, StudyReport, mean_of, probability, sd_of, span_text
+from benchlab.report.rounding import count, number, probability, words
+from benchlab.report.study.report import PublishedSet, StudyReport, mean_of, sd_of, span_text
 from benchlab.stats.groups import groups_of_summaries
 from benchlab.stats.pairs import Pair, games_howell
 from benchlab.stats.wording import STARS_LEGEND, p_equals, stars

@@ -13,12 +13,10 @@ from scipy import special
 
 from benchlab.io.published import PublishedAngle
 from benchlab.io.study_values import DesignValues, StudySet, StudyValues
-from benchlab.report.document import NONE, Cell, cut
+from benchlab.report.document import NONE, cut
 from benchlab.report.rounding import decimals_of, number
 from benchlab.stats.comparison import Comparison
 from benchlab.stats.repeatability import FACTOR
-from benchlab.stats.studentized_range import FLOOR
-from benchlab.stats.wording import p_text
 
 SAME_PRESSURE_MPa = 1e-6
 
@@ -153,11 +151,6 @@ def joined(items: Sequence[str], most: int = 5) -> str:
     'a, b and 1 more'
     """
     return ", ".join(items[:most]) + (f" and {len(items) - most} more" if len(items) > most else "")
-
-
-def probability(p: float | None, floor: float = FLOOR) -> Cell:
-    """A probability as the page shows it; below the floor only that it is below (for pairs: 1e-13, noise from there on)."""
-    return Cell(None, NONE) if p is None else Cell(p, p_text(p, floor))
 
 
 def span_text(low: float | None, high: float | None, places: int) -> str:
