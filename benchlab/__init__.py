@@ -4,23 +4,28 @@ The house has floors, and imports only go down (checked by import-linter in the 
 
     cli         parses, calls one workflow, prints
     workflows   open, compute, save: one file per verb
-    report      draws and tabulates
-    io          disk: video, tables, result files, drawings; other engines
+    runner      executes a plan on a bench | report: draws and tabulates
+    devices     benches: serial, emulated firmware, twin, replay | io: disk: video, tables, result files, protocols, journals
     deck        the actuator as an input deck of another finite-element engine
     vision      picture -> markers -> tracks -> circle -> curvature
     simulation  design + layup -> shell cell -> angle, volume, moment against pressure
     cutting     design -> outlines for the laser
     force       force trace -> peak of each cycle -> blocked force against pressure
     stats       values of samples -> do designs differ, how well do they repeat
+    protocol    segments -> plan: pressure or reference angle, tick by tick
+    control     flex sensor, plant -> gains; PI and feed-forward; tracking
     actuator    the fabric-shelled design
+    bench       volts <-> pressure, sensors, limits, as calibrated
     units       what a pressure or a length may be written in
     errors      what can go wrong, and with which exit code
 
-(vision, simulation, cutting, force and stats are one floor of numeric kernels and do not see each other.)
+(runner and report are one floor, devices and io another, and vision to control a floor of numeric kernels; rooms on one floor
+do not see each other.)
 
 See:      video -> frames -> markers -> linked tracks -> circle -> curvature series -> result file -> picture.
 Measure:  export of a testing machine -> columns in N, mm, s -> cycles -> blocked force against pressure -> files, figure.
 Compare:  study file -> angle of each cycle of each sample -> ANOVA, pairs, components -> report.
+Drive:    protocol file -> plan -> checks -> runner -> device + journal -> drive file -> picture.
 Predict:  design + layup -> pieces -> laminates on a mesh -> cell -> path of states -> response curves -> files, pictures.
 """
 

@@ -1,0 +1,116 @@
+"""The bench as calibrated: what volts at the DAC mean in pressure, what its sensors' volts mean, and its limits.
+
+The chain: pressure (MPa) → volts at the regulator's input → code of the 12-bit DAC, whose reference is the supply of the
+microcontroller. The limit is a pressure; volts and codes are derived, and rounded down so that they never cross it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from benchlab.errors import BenchError, InputError
+
+DAC_CODES = 4096
+"""Steps of the MCP4725: its output is supply · code / 4096 (datasheet, section 3.1)."""
+
+NOMINAL_GAIN_MPA_PER_V = 0.48 / 5
+"""The paper's regulator: 0 to 5 V is 0 to 0.48 MPa (section III-D)."""
+
+UNCALIBRATED_CEILING_V = 3.50
+"""Most volts on a bench without a calibration: the DAC's reference, the USB supply, may lie between 4.5 and 5.25 V."""
+
+
+class LimitError(BenchError):
+    """A pressure that the bench must not be asked for."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """value = gain · volts + offset. sd: standard deviation of one value about the line, NaN where unknown."""
+
+    gain: float
+    offset: float
+    sd: float = math.nan
+
+    def of(self, volts: float) -> float:
+        """The value at these volts.
+
+        >>> Line(0.12, -0.12).of(5.0)
+        0.48
+        """
+        return self.gain * volts + self.offset
+
+    def inverse(self, value: float) -> float:
+        """The volts at which the line has this value."""
+        return (value - self.offset) / self.gain
+
+
+@dataclass(frozen=True)
+class Bench:
+    """A bench's calibration. Volts, MPa, degrees.
+
+    regulator: pressure over volts at its input. monitor: pressure over volts at its monitor output, None where that is not wired.
+    flex: bending angle in degrees over volts of the flex sensor's divider, None where it is not calibrated.
+    supply_V: of the microcontroller, which is the DAC's and the ADC's reference. gauge, date: how and when it was
+    calibrated. calibrated: whether it was at all; without, at most 3.50 V are given.
+
+    >>> bench = Bench(name="a", calibrated=True)
+    >>> bench.code(0.35), round(bench.volts(2986), 3), round(bench.pressure_MPa(2986), 4)
+    (2986, 3.645, 0.3499)
+    """
+
+    name: str
+    regulator: Line = Line(NOMINAL_GAIN_MPA_PER_V, 0.0)
+    monitor: Line | None = None
+    flex: Line | None = None
+    limit_MPa: float = 0.35
+    supply_V: float = 5.0
+    gauge: str = ""
+    date: str = ""
+    calibrated: bool = False
+
+    def __post_init__(self) -> None:
+        demands = {
+            "a limit_MPa above 0 and at most 1": 0 < self.limit_MPa <= 1,
+            "a supply_V from 4.5 to 5.5": 4.5 <= self.supply_V <= 5.5,
+            "a regulator whose gain is above 0": self.regulator.gain > 0,
+            "a monitor whose gain is above 0": self.monitor is None or self.monitor.gain > 0,
+            "a flex sensor whose gain is not 0": self.flex is None or self.flex.gain != 0,
+        }
+        for demand, met in demands.items():
+            if not met:
+                raise InputError(f"a bench needs {demand}", where=self.name)
+
+    @property
+    def ceiling_code(self) -> int:
+        """The largest code that this bench is ever given."""
+        volts = self.regulator.inverse(self.limit_MPa)
+        if not self.calibrated:
+            volts = min(volts, UNCALIBRATED_CEILING_V)
+        return max(0, min(self._floor_code(volts), DAC_CODES - 1))
+
+    @property
+    def ceiling_MPa(self) -> float:
+        """The largest pressure that this bench can be asked for: its limit, or less where volts are capped."""
+        return min(self.limit_MPa, self.pressure_MPa(self.ceiling_code + 1))
+
+    def code(self, pressure_MPa: float) -> int:
+        """The DAC's code for a pressure, rounded down. LimitError for a pressure that is negative, not a number or above the ceiling."""
+        if not 0 <= pressure_MPa <= self.ceiling_MPa + 1e-12:
+            raise LimitError(
+                f"{pressure_MPa:g} MPa is outside 0 to {self.ceiling_MPa:.4g} MPa, the limit of bench {self.name}",
+                hint="ask for less" if self.calibrated else "calibrate the bench with `benchlab bench calibrate`",
+            )
+        return max(0, min(self._floor_code(self.regulator.inverse(pressure_MPa)), self.ceiling_code))
+
+    def volts(self, code: int) -> float:
+        """Volts at the regulator's input at a code."""
+        return self.supply_V * code / DAC_CODES
+
+    def pressure_MPa(self, code: int) -> float:
+        """The pressure that a code asks of the regulator."""
+        return max(0.0, self.regulator.of(self.volts(code)))
+
+    def _floor_code(self, volts: float) -> int:
+        return math.floor(volts / self.supply_V * DAC_CODES + 1e-9)

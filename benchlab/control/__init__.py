@@ -1,0 +1,1 @@
+"""Curvature control: flex sensor, plant, tuning, PI with anti-windup, feed-forward, tracking."""

@@ -1,0 +1,1 @@
+"""Benches, one interface: serial, emulated firmware, digital twin, replay."""

@@ -1,0 +1,1 @@
+"""Pressure protocols as numbers: segments, and the plan that they unroll to."""
