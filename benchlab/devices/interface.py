@@ -7,6 +7,7 @@ wrong on the way is told by `faults`, never hidden.
 from __future__ import annotations
 
 import enum
+import math
 import typing
 from dataclasses import dataclass
 
@@ -35,7 +36,8 @@ class Reading:
     """What a bench answers to one command; NaN where it has no such sensor or gave no answer.
 
     pressure_MPa: measured at the regulator. flex_V: at the flex sensor's divider. code: that the DAC holds, −1 unknown.
-    device_time_s: of the device's own clock. status: see Status.
+    device_time_s: of the device's own clock. status: see Status. monitor_V: at the regulator's monitor output, which pressure_MPa is
+    from; there too where the monitor is wired and not calibrated.
     """
 
     pressure_MPa: float
@@ -43,6 +45,7 @@ class Reading:
     code: int
     device_time_s: float
     status: Status
+    monitor_V: float = math.nan
 
 
 @dataclass(frozen=True, slots=True)

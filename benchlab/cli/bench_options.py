@@ -1,0 +1,34 @@
+"""What all commands that open a bench ask for: which one, and its calibration."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+BENCHES = "twin | twin:FILE | serial:PORT | emulated"
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+def bench_option(also: str = "", default: str | None = "twin") -> Callable[[Command], Command]:
+    """`--bench`, as `bench`. also: further kinds that this command knows, as `replay:FILE`. default None: it must be given."""
+    kinds = f"{BENCHES} | {also}" if also else BENCHES
+    return click.option(
+        "--bench",
+        metavar="BENCH",
+        required=default is None,
+        default=default,
+        show_default=default is not None,
+        help=f"{kinds}. `benchlab bench ports` lists the ports. A twin is simulated, and what it writes says so.",
+    )
+
+
+calibration_option = click.option(
+    "--calibration",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="The bench's calibration, by `benchlab bench calibrate`. Without it a real bench is given 3.50 V at most.",
+)
