@@ -18,7 +18,10 @@ NOMINAL_GAIN_MPA_PER_V = 0.48 / 5
 """The paper's regulator: 0 to 5 V is 0 to 0.48 MPa (section III-D)."""
 
 UNCALIBRATED_CEILING_V = 3.50
-"""Most volts on a bench without a calibration: the DAC's reference, the USB supply, may lie between 4.5 and 5.25 V."""
+"""Most volts, by the nominal supply, on a bench without a calibration."""
+
+HIGHEST_USB_V = 5.25
+"""What a supply that nobody measured may be (USB 2.0, section 7.2.1): a code then gives more volts than it is taken for."""
 
 
 class LimitError(BenchError):
@@ -53,7 +56,8 @@ class Bench:
     regulator: pressure over volts at its input. monitor: pressure over volts at its monitor output, None where that is not wired.
     flex: bending angle in degrees over volts of the flex sensor's divider, None where it is not calibrated.
     supply_V: of the microcontroller, which is the DAC's and the ADC's reference. gauge, date: how and when it was
-    calibrated. calibrated: whether it was at all; without, at most 3.50 V are given.
+    calibrated. calibrated: whether it was at all; without, at most 3.50 V are given, and the limit holds for a supply of 5.25 V too.
+    InputError for numbers that no bench has, among them a regulator that would not vent at 0 V.
 
     >>> bench = Bench(name="a", calibrated=True)
     >>> bench.code(0.35), round(bench.volts(2986), 3), round(bench.pressure_MPa(2986), 4)
@@ -74,9 +78,14 @@ class Bench:
         demands = {
             "a limit_MPa above 0 and at most 1": 0 < self.limit_MPa <= 1,
             "a supply_V from 4.5 to 5.5": 4.5 <= self.supply_V <= 5.5,
-            "a regulator whose gain is above 0": self.regulator.gain > 0,
-            "a monitor whose gain is above 0": self.monitor is None or self.monitor.gain > 0,
-            "a flex sensor whose gain is not 0": self.flex is None or self.flex.gain != 0,
+            "a regulator whose gain is from 0.001 to 1 MPa/V": 0.001 <= self.regulator.gain <= 1,
+            "a regulator that vents at 0 V: an offset_MPa of at most a tenth of the limit, and at least -1": (
+                -1 <= self.regulator.offset <= 0.1 * self.limit_MPa
+            ),
+            "a monitor whose gain is above 0": self.monitor is None or 0 < self.monitor.gain < math.inf,
+            "a monitor whose offset_MPa is a number": self.monitor is None or math.isfinite(self.monitor.offset),
+            "a flex sensor whose gain is a number and not 0": self.flex is None or 0 < abs(self.flex.gain) < math.inf,
+            "a flex sensor whose offset_deg is a number": self.flex is None or math.isfinite(self.flex.offset),
         }
         for demand, met in demands.items():
             if not met:
@@ -85,15 +94,19 @@ class Bench:
     @property
     def ceiling_code(self) -> int:
         """The largest code that this bench is ever given."""
-        volts = self.regulator.inverse(self.limit_MPa)
-        if not self.calibrated:
-            volts = min(volts, UNCALIBRATED_CEILING_V)
-        return max(0, min(self._floor_code(volts), DAC_CODES - 1))
+        return self._floor_code(self._ceiling_V)
 
     @property
     def ceiling_MPa(self) -> float:
         """The largest pressure that this bench can be asked for: its limit, or less where volts are capped."""
-        return min(self.limit_MPa, self.pressure_MPa(self.ceiling_code + 1))
+        return max(0.0, min(self.limit_MPa, self.regulator.of(self._ceiling_V)))
+
+    @property
+    def _ceiling_V(self) -> float:
+        volts = self.regulator.inverse(self.limit_MPa)
+        if not self.calibrated:
+            volts = min(volts * self.supply_V / max(self.supply_V, HIGHEST_USB_V), UNCALIBRATED_CEILING_V)
+        return min(volts, self.volts(DAC_CODES - 1))
 
     def code(self, pressure_MPa: float) -> int:
         """The DAC's code for a pressure, rounded down. LimitError for a pressure that is negative, not a number or above the ceiling."""
@@ -102,7 +115,7 @@ class Bench:
                 f"{pressure_MPa:g} MPa is outside 0 to {self.ceiling_MPa:.4g} MPa, the limit of bench {self.name}",
                 hint="ask for less" if self.calibrated else "calibrate the bench with `benchlab bench calibrate`",
             )
-        return max(0, min(self._floor_code(self.regulator.inverse(pressure_MPa)), self.ceiling_code))
+        return min(self._floor_code(self.regulator.inverse(pressure_MPa)), self.ceiling_code)
 
     def volts(self, code: int) -> float:
         """Volts at the regulator's input at a code."""
@@ -113,4 +126,4 @@ class Bench:
         return max(0.0, self.regulator.of(self.volts(code)))
 
     def _floor_code(self, volts: float) -> int:
-        return math.floor(volts / self.supply_V * DAC_CODES + 1e-9)
+        return max(0, math.floor(volts / self.supply_V * DAC_CODES + 1e-9))
