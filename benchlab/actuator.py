@@ -1,9 +1,12 @@
-"""The fabric-shelled pneumatic bending actuator, as designed (paper, section II-A, Eqs 1, 6 and 7)."""
+"""The fabric-shelled pneumatic bending actuator, as designed (paper, section II-A, Eqs 1, 6 and 7), and its tip as an arc."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
 
 from benchlab.errors import UsageError
 
@@ -99,3 +102,17 @@ class ShellDesign:
     def tpu_area_mm2(self) -> float:
         """TPU area wl·tw·n (Eq 6, with the real n of Eq 7)."""
         return self.window_length_mm * self.window_width_mm * self.window_count
+
+
+def tip_position_mm(angle_rad: NDArray[np.float64], length_mm: NDArray[np.float64] | float) -> NDArray[np.float64]:
+    """Tip of an arc of constant curvature, base at the origin and along z: (..., 2) as (towards the strip, along z).
+
+    Piecewise constant curvature with one piece (Webster and Jones 2010). length_mm: of the strip's line, λ·al.
+
+    >>> tip_position_mm(np.array([0.0, np.pi]), 180.0).round(2)
+    array([[  0.  , 180.  ],
+           [114.59,   0.  ]])
+    """
+    angle = np.asarray(angle_rad, dtype=float)
+    half = np.sinc(angle / (2 * np.pi))
+    return np.stack([length_mm * half * np.sin(angle / 2), length_mm * half * np.cos(angle / 2)], axis=-1)

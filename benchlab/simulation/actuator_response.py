@@ -162,20 +162,6 @@ def actuator_response(
     )
 
 
-def tip_position_mm(angle_rad: FloatArray, length_mm: FloatArray | float) -> FloatArray:
-    """Tip of an arc of constant curvature, base at the origin and along z: (..., 2) as (towards the strip, along z).
-
-    Piecewise constant curvature with one piece (Webster and Jones 2010). length_mm: of the strip's line, λ·al.
-
-    >>> tip_position_mm(np.array([0.0, np.pi]), 180.0).round(2)
-    array([[  0.  , 180.  ],
-           [114.59,   0.  ]])
-    """
-    angle = np.asarray(angle_rad, dtype=float)
-    half = np.sinc(angle / (2 * np.pi))
-    return np.stack([length_mm * half * np.sin(angle / 2), length_mm * half * np.cos(angle / 2)], axis=-1)
-
-
 def tip_force_N(moment_Nmm: FloatArray, angle_rad: FloatArray, length_mm: FloatArray | float) -> FloatArray:
     """Force with which the tip presses along the path on which it would move, F·|d tip/dθ| = M (virtual work of an arc
     of constant curvature). At θ = 0 the lever is half the length.

@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from benchlab.actuator import ShellDesign
+from benchlab.actuator import ShellDesign, tip_position_mm
 from benchlab.errors import InputError, UsageError
 from benchlab.io.files import sha256
 from benchlab.io.layup_file import layup_document
 from benchlab.io.nexus import plain
 from benchlab.io.response_file import read_response_provenance, write_response_csv, write_response_file
-from benchlab.simulation.actuator_response import ActuatorResponse, actuator_response, tip_force_N, tip_position_mm
+from benchlab.simulation.actuator_response import ActuatorResponse, actuator_response, tip_force_N
 from benchlab.simulation.deformed import extremes, layer_stresses, unstable_share
 from benchlab.simulation.film_strain import peak_film_strain
 from benchlab.simulation.laws.law import FloatArray

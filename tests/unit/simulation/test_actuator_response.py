@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from scipy.integrate import cumulative_trapezoid
 
-from benchlab.actuator import ShellDesign
+from benchlab.actuator import ShellDesign, tip_position_mm
 from benchlab.errors import UsageError
 from benchlab.io.layup_file import read_layup
-from benchlab.simulation.actuator_response import Fixture, actuator_response, tip_force_N, tip_position_mm
+from benchlab.simulation.actuator_response import Fixture, actuator_response, tip_force_N
 from benchlab.simulation.laws import Polynomial
 from benchlab.simulation.layup import Layup
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchlab.actuator import ShellDesign
-from benchlab.simulation.actuator_response import ActuatorResponse, actuator_response, tip_position_mm
+from benchlab.actuator import ShellDesign, tip_position_mm
+from benchlab.simulation.actuator_response import ActuatorResponse, actuator_response
 from benchlab.simulation.deformed import extremes, layer_stresses
 from benchlab.simulation.laws import Polynomial
 from benchlab.simulation.layup import Layup
