@@ -1,0 +1,99 @@
+"""How a run ended, and what that means to whoever called."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from benchlab.devices.interface import LostError
+from benchlab.errors import BenchError, BenchlabError, printable
+from benchlab.units import FloatArray
+
+EXIT_CODES = {
+    "completed": 0,
+    "bug": 1,
+    "journal": 3,
+    "interrupted": 130,
+    "terminated": 130,
+    "hung up": 130,
+    "quit": 130,
+}
+"""Exit code of a reason; all others are stops of the bench or for safety."""
+
+
+@dataclass(frozen=True)
+class Cause:
+    """Why a run ends. reason: a word or two, for machines. words: what was seen, the limit, and what to look at. error: if one was raised."""
+
+    reason: str
+    words: str
+    error: BaseException | None = None
+
+
+@dataclass(frozen=True)
+class RunEnd:
+    """The end of a run, of which the journal's stop record has all but the lateness.
+
+    vented: whether the device confirmed it; vent_words: what it said if not. ticks: of the plan, that were asked of the device. paused_s: in
+    all. late_s: (ticks,) each command after its deadline. trouble: what could not be written at the end, empty if all was.
+    """
+
+    cause: Cause
+    vented: bool
+    vent_words: str
+    ticks: int
+    ticks_planned: int
+    time_s: float
+    paused_s: float
+    faults: int
+    late_s: FloatArray = field(repr=False)
+    trouble: str = ""
+
+    @property
+    def reason(self) -> str:
+        return self.cause.reason
+
+    @property
+    def completed(self) -> bool:
+        return self.cause.reason == "completed"
+
+    @property
+    def exit_code(self) -> int:
+        """As in benchlab.errors; a bench that is not known to be vented is a failure whatever else happened."""
+        code = EXIT_CODES.get(self.cause.reason, BenchError.exit_code)
+        return code if self.vented or code == EXIT_CODES["bug"] else BenchError.exit_code
+
+    @property
+    def late_ms(self) -> dict[str, float] | None:
+        """Median, 99th percentile and largest lateness; None for a run without a tick."""
+        if not len(self.late_s):
+            return None
+        p50, p99 = np.percentile(self.late_s, (50, 99))
+        return {"p50": 1e3 * p50, "p99": 1e3 * p99, "max": 1e3 * float(self.late_s.max())}
+
+    def record(self) -> dict[str, Any]:
+        """The stop record, in JSON's own types."""
+        return {
+            "reason": self.cause.reason,
+            "words": self.cause.words,
+            "vented": self.vented,
+            "vent_words": self.vent_words,
+            "ticks": self.ticks,
+            "ticks_planned": self.ticks_planned,
+            "time_s": self.time_s,
+            "paused_s": self.paused_s,
+            "faults": self.faults,
+        }
+
+
+def cause_of(error: BaseException) -> Cause:
+    """An exception as a cause: of the bench, of the user, or a bug."""
+    if isinstance(error, KeyboardInterrupt):
+        return Cause("interrupted", "interrupted from the keyboard, twice", error)
+    if isinstance(error, LostError):
+        return Cause("lost", str(error), error)
+    if isinstance(error, BenchlabError):
+        return Cause("refused" if isinstance(error, BenchError) else "error", str(error), error)
+    return Cause("bug", f"a bug in benchlab: {type(error).__name__}: {printable(error)}", error)

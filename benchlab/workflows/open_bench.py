@@ -1,0 +1,128 @@
+"""From `--bench` and `--calibration` to a bench: what it may be asked for, and, later, the open device."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from benchlab.bench import Bench
+from benchlab.devices.interface import Device
+from benchlab.errors import InputError, UsageError
+from benchlab.units import FloatArray
+
+NEEDS = {"twin": None, "serial": "PORT", "emulated": None, "replay": "FILE"}
+"""What must follow the kind of a bench after a colon. A twin may be followed by a file."""
+
+
+@dataclass(frozen=True)
+class Spec:
+    """`--bench`, taken apart. kind: a key of NEEDS. where: what stood after the colon, empty if nothing."""
+
+    kind: str
+    where: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.kind}:{self.where}" if self.where else self.kind
+
+
+def spec_of(text: str) -> Spec:
+    """Take `--bench` apart. UsageError for a kind that there is not, or one without what it needs.
+
+    >>> spec_of("serial:/dev/ttyUSB0")
+    Spec(kind='serial', where='/dev/ttyUSB0')
+    """
+    kind, _, where = text.partition(":")
+    kinds = "twin, twin:FILE, serial:PORT, emulated or replay:FILE"
+    if kind not in NEEDS:
+        raise UsageError(f"--bench {text!r} is no bench", hint=f"give {kinds}")
+    if NEEDS[kind] and not where:
+        raise UsageError(f"--bench {kind} does not say which", hint=f"give {kind}:{NEEDS[kind]}")
+    if where and kind == "emulated":
+        raise UsageError(f"--bench {text!r}: nothing follows `emulated`", hint=f"give {kinds}")
+    return Spec(kind, where)
+
+
+def bench_of(spec: Spec, calibration: Path | None = None) -> Bench:
+    """What the bench may be asked for: its calibration file's, or what there is without one. Opens no port.
+
+    A twin without a file has the calibration that a twin is made with, a replay the one of its run.
+    """
+    from benchlab.io.bench_file import read_bench
+
+    if calibration is not None:
+        return read_bench(calibration)
+    if spec.kind == "twin":
+        from benchlab.devices.twin.bench import twin_bench
+
+        return twin_bench()
+    if spec.kind == "replay":
+        return _recorded_bench(Path(spec.where))
+    return read_bench(None)
+
+
+def open_bench(
+    text: str,
+    bench: Bench | None = None,
+    *,
+    fast: bool = False,
+    seed: int | None = None,
+    curve: tuple[FloatArray, FloatArray] | None = None,
+) -> Device:
+    """Open the bench that `--bench` names, disarmed. bench: its calibration, `bench_of` where None.
+
+    fast: in virtual time; UsageError for a serial bench, which has only the real one. seed, curve (pressure in MPa, angle in
+    degrees): of a twin, in place of its file's. Raises BenchError where the bench does not answer, with the ports that there are.
+    """
+    spec = spec_of(text)
+    bench = bench or bench_of(spec)
+    if spec.kind != "twin" and (seed is not None or curve is not None):
+        raise UsageError(f"--seed and a curve are a twin's, not those of {spec}", hint="leave them out")
+    if spec.kind == "serial":
+        if fast:
+            raise UsageError("--fast is virtual time, which a real bench does not have", hint="leave --fast out")
+        from benchlab.devices.serial_bench import open_serial
+
+        return open_serial(spec.where, bench)
+    if spec.kind == "emulated":
+        from benchlab.devices.emulated import open_emulated
+
+        return open_emulated(bench, lockstep=fast)
+    if spec.kind == "replay":
+        return _replay(Path(spec.where))
+    from benchlab.devices.twin.twin import Twin
+    from benchlab.io.twin_file import read_twin
+
+    settings = read_twin(Path(spec.where) if spec.where else None)
+    if seed is not None:
+        settings = replace(settings, seed=seed)
+    if curve is not None:
+        settings = replace(settings, curve=curve)
+    return Twin(settings, bench)
+
+
+def _replay(path: Path) -> Device:
+    from benchlab.devices.replay import Replay
+    from benchlab.io.journal import read_journal
+
+    journal = read_journal(path)
+    if not len(journal.samples):
+        raise InputError("holds no sample", file=path, hint="replay a journal of a run that began")
+    return Replay(journal.samples, journal.header.get("device", {}))
+
+
+def _recorded_bench(path: Path) -> Bench:
+    from benchlab.bench import Line
+    from benchlab.io.journal import read_journal
+
+    told = read_journal(path).header.get("bench")
+    if not isinstance(told, dict):
+        raise InputError("its header does not say what bench it ran on", file=path, hint="give --calibration")
+    lines = {
+        name: Line(**{k: float("nan") if v is None else v for k, v in told[name].items()})
+        for name in ("regulator", "monitor", "flex")
+        if told.get(name) is not None
+    }
+    try:
+        return Bench(**{**told, **{name: lines.get(name) for name in ("monitor", "flex")}, "regulator": lines["regulator"]})
+    except (TypeError, KeyError) as error:
+        raise InputError(f"its header's bench is not one: {error}", file=path, hint="give --calibration") from error
