@@ -1,0 +1,562 @@
+/*
+ * benchlab_nano: an Arduino Nano (ATmega328P, 16 MHz) between a computer and a pressure regulator.
+ *
+ * It holds the voltage that the regulator follows, and trusts nobody: at boot it sets the DAC to 0 before anything else; it gives
+ * no pressure until it is armed; it refuses codes above its ceiling; it slows rises; it vents when nobody speaks, when its own
+ * main loop hangs, and when the DAC does not acknowledge. Vent is code 0: it asks the regulator to vent. Use a relief valve too.
+ *
+ * Wiring:  A4 SDA and A5 SCL to the MCP4725 (VCC to 5 V, OUT to the regulator's input, grounds together)
+ *          A0 middle of the flex sensor's divider    A1 monitor output of the regulator    D2 trigger of the camera
+ *
+ * Builds in the Arduino IDE (board "Arduino Nano"), and with plain avr-gcc:
+ *     avr-gcc -mmcu=atmega328p -DF_CPU=16000000UL -Os -x c++ benchlab_nano.ino -o benchlab_nano.elf
+ * The frames, what each failure does and how to flash: docs/firmware.md of benchlab. MIT licence.
+ */
+
+#include <avr/eeprom.h>
+#include <avr/interrupt.h>
+#include <avr/io.h>
+#include <avr/sleep.h>
+#include <avr/wdt.h>
+#include <util/crc16.h>
+#include <util/delay.h>
+
+/* ---- Settings of this bench; `benchlab bench firmware` writes the ceiling of yours ---- */
+
+#define CEILING_CODE 2867    /* codes above are refused: 2867 of 4096 is 3.50 V at 5 V */
+#define SLEW_CODES_PER_MS 40 /* rises only; falling is never slowed */
+#define SILENCE_MS 200       /* armed, and nothing valid heard for this long: vent */
+#define TRIGGER_MS 20        /* length of the camera's pulse */
+#define DAC_ADDRESS 0x62     /* of the MCP4725: 0x62, or 0x60 to 0x67, as printed on the board */
+#define ADC_SAMPLES 8        /* readings are means of so many conversions, one each millisecond; a power of two, at most 32 */
+
+/* ---- What follows needs no change ---- */
+
+#define PROTOCOL 1 /* of the frames; the computer refuses another */
+#define VERSION_MAJOR 1
+#define VERSION_MINOR 0
+#define VERSION_PATCH 0
+
+#define BAUD 500000UL      /* 16 MHz / 16 / 2: exact here, in the FT232 (3 MHz / 6) and in the CH340 (12 MHz / 24) */
+#define TWI_HZ 100000UL    /* slow edges of long wires and weak pull-ups are fine */
+#define WATCHDOG_MS 125    /* the main loop may not take longer */
+#define DAC_REFRESH_MS 10  /* the DAC is told its code again this often: so its loss is noticed, and undone */
+#define PARTIAL_MS 3       /* a frame that stops in the middle for this long is thrown away */
+
+#if CEILING_CODE < 0 || CEILING_CODE > 4095
+#error "CEILING_CODE must be 0 to 4095"
+#endif
+
+enum { SYNC = 0xB5, HEAD = 5, CRC = 2, MOST = 20, ASKED = 3 }; /* bytes: of a head, a CRC, the longest payload, and asked */
+enum { HELLO = 1, ARM = 2, SET = 3, VENT = 4, STATUS = 5, ANSWER = 0x80 };
+enum { ARMED = 1, SLEWING = 2, SILENCE = 4, WATCHDOG = 8, REFUSED = 16, DAC_LOST = 32, REBOOTED = 128 };
+
+#define UNKNOWN 0xFFFF                      /* code of a DAC that does not acknowledge */
+#define HUNG_AT ((uint8_t *)0)              /* EEPROM: 1 where the watchdog found the main loop hung */
+#define BOOTS_AT ((uint16_t *)2)            /* EEPROM: number of boots */
+
+static uint8_t reset_cause __attribute__((section(".noinit"))); /* MCUSR as it was at boot */
+
+static uint16_t output, target;      /* code that the DAC holds, and that was asked for */
+static uint16_t dac_eeprom, boots;   /* code that the DAC takes at power-on; number of boots */
+static uint8_t flags, allowance, trigger_ms, since_refresh_ms;
+static uint16_t last_number, crc_errors, dropped;
+static uint32_t heard_ms;            /* when the last valid command came */
+
+static volatile uint32_t clock_ms;
+static volatile uint16_t sums[2];    /* of the last ADC_SAMPLES conversions: flex, monitor */
+static volatile uint8_t in_ring[64], in_head, in_tail, out_ring[64], out_head, out_tail;
+
+static uint8_t inbox[HEAD + ASKED + CRC], in_box;
+
+/* ---- Two-wire bus: nothing here waits for ever ---- */
+
+static uint8_t twi(uint8_t what) /* do it, wait 1 ms at most; the status, or 0 where the bus hangs */
+{
+    TWCR = what | (1 << TWINT) | (1 << TWEN);
+    for (uint16_t n = 0; n < 2000; n++)
+        if (TWCR & (1 << TWINT))
+            return TWSR & 0xF8;
+    return 0;
+}
+
+static void twi_stop(void)
+{
+    TWCR = (1 << TWINT) | (1 << TWEN) | (1 << TWSTO);
+    for (uint8_t n = 0; n < 200 && (TWCR & (1 << TWSTO)); n++)
+        ;
+}
+
+static void twi_begin(void) /* let go of the bus, clock out whoever holds it, take it again */
+{
+    TWCR = 0;
+    PORTC &= ~((1 << PC4) | (1 << PC5));
+    for (uint8_t n = 0; n < 9; n++) {
+        DDRC |= 1 << PC5; /* SCL low, then let it rise */
+        _delay_us(5);
+        DDRC &= ~(1 << PC5);
+        _delay_us(5);
+    }
+    PORTC |= (1 << PC4) | (1 << PC5); /* weak pull-ups beside those of the board */
+    TWSR = 0;
+    TWBR = (F_CPU / TWI_HZ - 16) / 2;
+    TWCR = 1 << TWEN;
+}
+
+static uint8_t twi_address(uint8_t read)
+{
+    uint8_t status = twi(1 << TWSTA);
+    if (status != 0x08 && status != 0x10)
+        return 0;
+    TWDR = (uint8_t)(DAC_ADDRESS << 1) | read;
+    status = twi(0);
+    return status == 0x18 || status == 0x28 || status == 0x40; /* 0x28: what simavr 1.6 says for 0x18 */
+}
+
+static uint8_t twi_byte(uint8_t byte)
+{
+    TWDR = byte;
+    return twi(0) == 0x28;
+}
+
+/* ---- DAC ---- */
+
+static uint8_t dac_write(uint16_t code) /* 1 where the DAC acknowledged all of it */
+{
+    uint8_t done = twi_address(0) && twi_byte(code >> 8) && twi_byte(code & 0xFF);
+    twi_stop();
+    return done;
+}
+
+static uint8_t dac_read(uint8_t *five) /* status, code (2), EEPROM (2) */
+{
+    uint8_t n = 0;
+    if (twi_address(1))
+        for (; n < 5; n++) {
+            uint8_t status = twi(n < 4 ? 1 << TWEA : 0);
+            if (status != 0x50 && status != 0x58)
+                break;
+            five[n] = TWDR;
+        }
+    twi_stop();
+    return n == 5;
+}
+
+static void vent(void);
+
+static void dac_put(uint16_t code)
+{
+    since_refresh_ms = 0;
+    if (!dac_write(code)) {
+        twi_begin();
+        if (!dac_write(code)) {
+            output = UNKNOWN;
+            target = 0;
+            flags = (flags & ~ARMED) | DAC_LOST;
+            return;
+        }
+    }
+    output = code;
+}
+
+static void vent(void)
+{
+    flags &= ~ARMED;
+    target = 0;
+    dac_put(0);
+}
+
+static void drive(void) /* towards the target: down at once, up by what is allowed in this millisecond */
+{
+    uint16_t next = target;
+    if (output == UNKNOWN)
+        return;
+    if (target > output) {
+        if (target - output > allowance)
+            next = output + allowance;
+        allowance -= next - output;
+    }
+    if (next != output)
+        dac_put(next);
+    if (output == target || output == UNKNOWN)
+        flags &= ~SLEWING;
+    else
+        flags |= SLEWING;
+}
+
+static void dac_forget(void) /* program the code that the DAC takes at power-on to 0, unless it is */
+{
+    uint8_t five[5], tries = 0;
+    dac_eeprom = UNKNOWN;
+    if (!dac_read(five))
+        return;
+    if (((five[3] & 0x0F) | five[4]) != 0) {
+        if (twi_address(0) && twi_byte(0x60) && twi_byte(0))
+            twi_byte(0);
+        twi_stop();
+        do {
+            wdt_reset();
+            _delay_ms(1);
+        } while (++tries < 100 && !(dac_read(five) && (five[0] & 0x80)));
+    }
+    dac_eeprom = (uint16_t)(five[3] & 0x0F) << 8 | five[4];
+}
+
+/* ---- Clock and ADC ---- */
+
+ISR(TIMER1_COMPA_vect)
+{
+    clock_ms++;
+    ADMUX = 1 << REFS0; /* flex, against the supply */
+    ADCSRA |= 1 << ADSC;
+}
+
+ISR(ADC_vect)
+{
+    static uint16_t ring[2][ADC_SAMPLES];
+    static uint8_t at;
+    uint8_t monitor = ADMUX & 1;
+    uint16_t now = ADC;
+    sums[monitor] += now - ring[monitor][at];
+    ring[monitor][at] = now;
+    if (monitor) {
+        at = (at + 1) % ADC_SAMPLES;
+    } else {
+        ADMUX = (1 << REFS0) | 1;
+        ADCSRA |= 1 << ADSC;
+    }
+}
+
+static uint32_t now_ms(void)
+{
+    cli();
+    uint32_t ms = clock_ms;
+    sei();
+    return ms;
+}
+
+static uint32_t now_us(void)
+{
+    cli();
+    uint32_t ms = clock_ms;
+    uint16_t half_us = TCNT1;
+    if ((TIFR1 & (1 << OCF1A)) && half_us < 1000)
+        ms++;
+    sei();
+    return ms * 1000 + half_us / 2;
+}
+
+static uint16_t mean_sum(uint8_t which) /* in 1/ADC_SAMPLES of a step of the ADC */
+{
+    cli();
+    uint16_t sum = sums[which];
+    sei();
+    return sum;
+}
+
+/* ---- Watchdog: the interrupt vents even while the main loop hangs, then the reset follows ---- */
+
+static void watchdog_begin(void)
+{
+    cli();
+    wdt_reset();
+    WDTCSR = (1 << WDCE) | (1 << WDE);
+    WDTCSR = (1 << WDIE) | (1 << WDE) | (1 << WDP1) | (1 << WDP0); /* 125 ms to the interrupt, 125 ms more to the reset */
+    sei();
+}
+
+ISR(WDT_vect)
+{
+    twi_begin();
+    if (!dac_write(0))
+        dac_write(0);
+    eeprom_update_byte(HUNG_AT, 1);
+    wdt_enable(WDTO_15MS);
+    for (;;)
+        ;
+}
+
+/* The watchdog outlives the reset that it causes: it is stopped before anything else runs. */
+void first_of_all(void) __attribute__((naked, used, section(".init3")));
+void first_of_all(void)
+{
+    reset_cause = MCUSR;
+    MCUSR = 0;
+    wdt_disable();
+}
+
+/* ---- Serial line ---- */
+
+ISR(USART_RX_vect)
+{
+    uint8_t byte = UDR0, next = (in_head + 1) % sizeof in_ring;
+    if (next != in_tail) {
+        in_ring[in_head] = byte;
+        in_head = next;
+    }
+}
+
+ISR(USART_UDRE_vect)
+{
+    if (out_tail == out_head) {
+        UCSR0B &= ~(1 << UDRIE0);
+        return;
+    }
+    UDR0 = out_ring[out_tail];
+    out_tail = (out_tail + 1) % sizeof out_ring;
+}
+
+static void say(uint8_t byte)
+{
+    out_ring[out_head] = byte;
+    out_head = (out_head + 1) % sizeof out_ring;
+}
+
+static void answer(uint16_t number, uint8_t command, const uint8_t *payload, uint8_t size)
+{
+    uint8_t free_bytes = (uint8_t)(out_tail - out_head - 1) % sizeof out_ring;
+    uint8_t head[HEAD] = {SYNC, size, (uint8_t)number, (uint8_t)(number >> 8), (uint8_t)(command | ANSWER)};
+    uint16_t crc = 0xFFFF;
+    if (free_bytes < HEAD + size + CRC) {
+        dropped++;
+        return;
+    }
+    for (uint8_t n = 0; n < HEAD + size; n++) {
+        uint8_t byte = n < HEAD ? head[n] : payload[n - HEAD];
+        if (n)
+            crc = _crc_xmodem_update(crc, byte);
+        say(byte);
+    }
+    say(crc & 0xFF);
+    say(crc >> 8);
+    UCSR0B |= 1 << UDRIE0;
+}
+
+static uint8_t *put16(uint8_t *at, uint16_t value)
+{
+    *at++ = value & 0xFF;
+    *at++ = value >> 8;
+    return at;
+}
+
+static void tell_hello(uint16_t number)
+{
+    uint8_t payload[MOST] = {PROTOCOL, VERSION_MAJOR, VERSION_MINOR, VERSION_PATCH};
+    uint8_t *at = put16(payload + 4, CEILING_CODE);
+    at = put16(at, SLEW_CODES_PER_MS);
+    at = put16(at, SILENCE_MS);
+    at = put16(at, WATCHDOG_MS);
+    at = put16(at, boots);
+    at = put16(at, dac_eeprom);
+    *at++ = reset_cause;
+    *at++ = ADC_SAMPLES;
+    *at++ = DAC_ADDRESS;
+    *at++ = flags;
+    answer(number, HELLO, payload, at - payload);
+}
+
+static void tell(uint16_t number, uint8_t command)
+{
+    uint8_t payload[MOST];
+    uint32_t us = now_us();
+    uint8_t *at = put16(payload, output);
+    at = put16(at, mean_sum(0));
+    at = put16(at, mean_sum(1));
+    at = put16(at, flags);
+    at = put16(at, us & 0xFFFF);
+    at = put16(at, us >> 16);
+    at = put16(at, boots);
+    at = put16(at, crc_errors);
+    at = put16(at, dropped);
+    answer(number, command, payload, at - payload);
+}
+
+/* ---- Commands ---- */
+
+static void arm(uint16_t for_boot)
+{
+    if (for_boot != boots || output != 0) { /* said to another boot, or the DAC does not answer */
+        flags |= REFUSED;
+        return;
+    }
+    flags = (flags & WATCHDOG) | ARMED;
+}
+
+static void set(uint16_t code, uint8_t trigger)
+{
+    if (code > CEILING_CODE || (code && !(flags & ARMED))) {
+        flags |= REFUSED;
+        return;
+    }
+    target = code;
+    drive();
+    if (trigger) {
+        PORTD |= 1 << PD2;
+        trigger_ms = TRIGGER_MS;
+    }
+}
+
+static void obey(uint16_t number, uint8_t command, const uint8_t *payload, uint8_t size)
+{
+    int16_t ahead = number - last_number;
+    uint16_t value = size >= 2 ? payload[0] | payload[1] << 8 : 0;
+    if (command == HELLO || command == VENT) { /* at any time and with any number: both can only vent */
+        vent();
+        flags &= ~(REFUSED | SLEWING);
+    } else if (ahead < 0) {
+        dropped++; /* an old command, late */
+        return;
+    } else if (ahead > 0) { /* else: the same again, as its answer was lost; it is only answered */
+        flags &= ~REFUSED;
+        heard_ms = now_ms();
+        if (command == ARM)
+            arm(value);
+        else if (command == SET)
+            set(value, payload[2] & 1);
+    }
+    if (command == HELLO || ahead > 0)
+        last_number = number;
+    if (command == HELLO)
+        tell_hello(number);
+    else
+        tell(number, command);
+}
+
+static uint8_t size_of(uint8_t command) /* of what is asked; 255 for no command */
+{
+    switch (command) {
+    case HELLO:
+    case VENT:
+    case STATUS:
+        return 0;
+    case ARM:
+        return 2;
+    case SET:
+        return 3;
+    }
+    return 255;
+}
+
+static void forget(uint8_t bytes)
+{
+    in_box -= bytes;
+    for (uint8_t n = 0; n < in_box; n++)
+        inbox[n] = inbox[n + bytes];
+}
+
+static void open_inbox(void) /* obey each whole frame in it; what is none is passed over, byte by byte */
+{
+    while (in_box) {
+        uint8_t size = in_box > 1 ? inbox[1] : 0, whole = HEAD + size + CRC;
+        uint16_t crc = 0xFFFF;
+        if (inbox[0] != SYNC || size > ASKED) {
+            forget(1);
+            continue;
+        }
+        if (in_box < whole)
+            return;
+        for (uint8_t n = 1; n < HEAD + size; n++)
+            crc = _crc_xmodem_update(crc, inbox[n]);
+        if (inbox[HEAD + size] != (crc & 0xFF) || inbox[HEAD + size + 1] != crc >> 8) {
+            crc_errors++;
+            forget(1);
+            continue;
+        }
+        if (size == size_of(inbox[4]))
+            obey(inbox[2] | inbox[3] << 8, inbox[4], inbox + HEAD, size);
+        else
+            dropped++;
+        forget(whole);
+    }
+}
+
+static void hear(void)
+{
+    static uint8_t last_ms;
+    if (in_tail != in_head)
+        last_ms = now_ms();
+    else if (in_box && (uint8_t)(now_ms() - last_ms) >= PARTIAL_MS) {
+        dropped++;
+        forget(1);
+        open_inbox();
+    }
+    while (in_tail != in_head) {
+        inbox[in_box++] = in_ring[in_tail];
+        in_tail = (in_tail + 1) % sizeof in_ring;
+        open_inbox();
+    }
+}
+
+/* ---- Main loop ---- */
+
+static void each_ms(uint32_t ms)
+{
+    allowance = SLEW_CODES_PER_MS;
+    if (trigger_ms && !--trigger_ms)
+        PORTD &= ~(1 << PD2);
+    if ((flags & ARMED) && ms - heard_ms >= SILENCE_MS) {
+        vent();
+        flags |= SILENCE;
+    }
+    drive();
+    if (++since_refresh_ms >= DAC_REFRESH_MS)
+        dac_put(output == UNKNOWN ? 0 : output);
+}
+
+void setup(void)
+{
+    twi_begin();
+    vent(); /* before anything else */
+    PORTD &= ~(1 << PD2);
+    DDRD |= 1 << PD2;
+    watchdog_begin();
+    dac_forget();
+    boots = eeprom_read_word(BOOTS_AT) + 1;
+    eeprom_update_word(BOOTS_AT, boots);
+    flags |= REBOOTED;
+    if (eeprom_read_byte(HUNG_AT) == 1 || (reset_cause & (1 << WDRF)))
+        flags |= WATCHDOG;
+    eeprom_update_byte(HUNG_AT, 0);
+
+    ADCSRA = (1 << ADEN) | (1 << ADIE) | 7; /* 125 kHz: a conversion takes 0.1 ms */
+    DIDR0 = 3;
+    TCCR1A = 0;
+    TCCR1B = (1 << WGM12) | (1 << CS11); /* counts half microseconds */
+    OCR1A = 1999;
+    TIMSK1 = 1 << OCIE1A;
+    UBRR0 = F_CPU / 16 / BAUD - 1;
+    UCSR0A = 0;
+    UCSR0C = (1 << UCSZ01) | (1 << UCSZ00);
+    UCSR0B = (1 << RXEN0) | (1 << TXEN0) | (1 << RXCIE0);
+    set_sleep_mode(SLEEP_MODE_IDLE);
+    sei();
+}
+
+void loop(void)
+{
+    static uint32_t done_ms;
+    uint32_t ms = now_ms();
+    wdt_reset();
+    if (ms != done_ms) {
+        done_ms = ms;
+        each_ms(ms);
+    }
+    hear();
+    cli();
+    if (clock_ms == done_ms && in_tail == in_head) { /* nothing to do until the next interrupt */
+        sleep_enable();
+        sei();
+        sleep_cpu();
+        sleep_disable();
+    }
+    sei();
+}
+
+#ifndef ARDUINO
+int main(void)
+{
+    setup();
+    for (;;)
+        loop();
+}
+#endif
