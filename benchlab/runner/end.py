@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from benchlab.bench import LimitError
 from benchlab.devices.interface import LostError
-from benchlab.errors import BenchError, BenchlabError, printable
+from benchlab.errors import BenchError, InputError, printable
 from benchlab.units import FloatArray
 
 EXIT_CODES = {
@@ -25,7 +26,7 @@ EXIT_CODES = {
 
 @dataclass(frozen=True)
 class Cause:
-    """Why a run ends. reason: a word or two, for machines. words: what was seen, the limit, and what to look at. error: if one was raised."""
+    """Why a run ends. reason: a word or two, for machines. words: what was seen, the limit, what to look at. error: if one was raised."""
 
     reason: str
     words: str
@@ -36,8 +37,8 @@ class Cause:
 class RunEnd:
     """The end of a run, of which the journal's stop record has all but the lateness.
 
-    vented: whether the device confirmed it; vent_words: what it said if not. ticks: of the plan, that were asked of the device. paused_s: in
-    all. late_s: (ticks,) each command after its deadline. trouble: what could not be written at the end, empty if all was.
+    vented: whether the device confirmed it; vent_words: what it said if not. ticks: of the plan, that were asked of the device.
+    paused_s: in all. late_s: (ticks,) each command after its deadline. trouble: what could not be written at the end, empty if all was.
     """
 
     cause: Cause
@@ -94,6 +95,10 @@ def cause_of(error: BaseException) -> Cause:
         return Cause("interrupted", "interrupted from the keyboard, twice", error)
     if isinstance(error, LostError):
         return Cause("lost", str(error), error)
-    if isinstance(error, BenchlabError):
-        return Cause("refused" if isinstance(error, BenchError) else "error", str(error), error)
+    if isinstance(error, LimitError):
+        return Cause("limit", str(error), error)
+    if isinstance(error, BenchError):
+        return Cause("refused", str(error), error)
+    if isinstance(error, InputError):
+        return Cause("journal", str(error), error)
     return Cause("bug", f"a bug in benchlab: {type(error).__name__}: {printable(error)}", error)

@@ -123,6 +123,8 @@ def _recorded_bench(path: Path) -> Bench:
         if told.get(name) is not None
     }
     try:
-        return Bench(**{**told, **{name: lines.get(name) for name in ("monitor", "flex")}, "regulator": lines["regulator"]})
+        return Bench(
+            **{**told, **{name: lines.get(name) for name in ("monitor", "flex")}, "regulator": lines["regulator"]}
+        )
     except (TypeError, KeyError) as error:
         raise InputError(f"its header's bench is not one: {error}", file=path, hint="give --calibration") from error

@@ -1,0 +1,24 @@
+"""What is known of one tick once it was answered: what guards and the screen look at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from benchlab.devices.interface import Reading
+
+
+@dataclass(slots=True)
+class Tick:
+    """index: of the plan. time_s: of the command, of the run. late_s: after its deadline. angle_deg: NaN where the flex sensor is not
+    calibrated. faults: that the device told of since the tick before. held: in a pause, in which the plan stands still."""
+
+    index: int
+    time_s: float
+    late_s: float
+    command_MPa: float
+    reading: Reading
+    status: int
+    angle_deg: float = float("nan")
+    reference_deg: float = float("nan")
+    faults: int = 0
+    held: bool = False
