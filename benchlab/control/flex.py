@@ -1,0 +1,165 @@
+"""The flex sensor's line, from volts to bending angle, from a run that holds several pressures.
+
+The paper's sensor "has a linear correlation between the change in voltage and the curvature" (section II-H); here the line comes
+with its intervals, and whether it is straight is tested.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import f as f_distribution
+
+from benchlab.bench import Line
+from benchlab.control.holds import Hold, find_holds
+from benchlab.control.straight_line import StraightLine, fit_straight_line
+from benchlab.errors import InputError
+from benchlab.units import FloatArray
+
+LEAST_HOLD_S = 0.8
+"""Shorter holds are not used."""
+
+SETTLED = 0.5
+"""The first half of a hold is left out: actuator and sensor are on their way."""
+
+LEAST_LEVELS = 3
+
+
+@dataclass(frozen=True)
+class LackOfFit:
+    """F test of a line against a line with a step at each level; df: its degrees of freedom."""
+
+    F: float
+    df: tuple[int, int]
+    p: float
+
+
+@dataclass(frozen=True)
+class FlexCalibration:
+    """θ = gain·V + offset from H holds, each averaged to one point, since the samples within one are not independent.
+
+    volts, angle_deg, pressure_MPa: (H,). rising: (H,) whether the hold before was lower. line: with intervals and the test of a bow.
+    lack_of_fit: None without levels that were held twice. hysteresis_deg: mean over levels held both ways of (falling − rising)
+    distance from the line, NaN without such; hysteresis_max_deg: the largest. sample_sd_deg: of one sample about its hold.
+    sd_deg: of one sample about the line, which is the Line's.
+    """
+
+    volts: FloatArray
+    angle_deg: FloatArray
+    pressure_MPa: FloatArray
+    rising: NDArray[np.bool_]
+    line: StraightLine
+    lack_of_fit: LackOfFit | None
+    hysteresis_deg: float
+    hysteresis_max_deg: float
+    sample_sd_deg: float
+
+    @property
+    def sd_deg(self) -> float:
+        return math.hypot(self.line.sd, self.sample_sd_deg)
+
+    @property
+    def bench_line(self) -> Line:
+        """As a bench has it."""
+        return Line(self.line.gain.value, self.line.offset.value, self.sd_deg)
+
+    @property
+    def residual_deg(self) -> FloatArray:
+        """(H,) angle less line."""
+        return self.angle_deg - self.line.of(self.volts)
+
+
+def calibrate_flex(
+    time_s: FloatArray,
+    command_MPa: FloatArray,
+    flex_V: FloatArray,
+    angle_time_s: FloatArray,
+    angle_deg: FloatArray,
+    confidence: float = 0.95,
+) -> FlexCalibration:
+    """The line through the holds of a run: command_MPa and flex_V (T,) over time_s (T,), and the angle (A,) that was seen by another,
+    over angle_time_s (A,) on the same clock, at any rate; NaN where a value is missing.
+
+    Of each hold the second half is averaged. Straightness: a quadratic term, and, where levels of pressure were held more than once,
+    lack of fit for near replicates (Shillington, Canad. J. Statist. 7, 137, 1979): angles at a level differ a little from time to
+    time, so each level gets a step on a common line, and the scatter within levels about it is the error.
+
+    Raises InputError for fewer than four usable holds or three levels, and where volts do not follow the angle.
+    """
+    holds, left_out = [], 0
+    for hold in find_holds(time_s, command_MPa, LEAST_HOLD_S):
+        point = _point(hold, time_s, flex_V, angle_time_s, angle_deg)
+        left_out += point is None
+        holds += [] if point is None else [(hold.pressure_MPa, *point)]
+    levels = len(_levels(np.array([h[0] for h in holds]))[1])
+    if len(holds) < LEAST_LEVELS + 1 or levels < LEAST_LEVELS:
+        raise InputError(
+            f"{len(holds)} holds at {levels} pressures have volts and an angle ({left_out} without); at least {LEAST_LEVELS + 1} holds at "
+            f"{LEAST_LEVELS} pressures are needed",
+            hint="run the protocol flex_calibration, and film all of it",
+        )
+    pressure, volts, angle, scatter_V = (np.array(column) for column in zip(*holds))
+    line = fit_straight_line(volts, angle, confidence)
+    if line.gain.low <= 0 <= line.gain.high:
+        raise InputError(
+            f"the volts do not follow the angle: the gain is {line.gain.value:.3g} °/V, with an interval from {line.gain.low:.3g} to "
+            f"{line.gain.high:.3g}",
+            hint="is the flex sensor wired, and is the angle on the run's clock?",
+        )
+    rising = np.concatenate([[True], np.diff(pressure) > 0])
+    differences = _differences(pressure, angle - line.of(volts), rising)
+    return FlexCalibration(
+        volts=volts,
+        angle_deg=angle,
+        pressure_MPa=pressure,
+        rising=rising,
+        line=line,
+        lack_of_fit=_lack_of_fit(volts, angle, pressure),
+        hysteresis_deg=float(differences.mean()) if len(differences) else math.nan,
+        hysteresis_max_deg=float(np.abs(differences).max()) if len(differences) else math.nan,
+        sample_sd_deg=abs(line.gain.value) * math.sqrt(float(np.square(scatter_V).mean())),
+    )
+
+
+def _point(
+    hold: Hold, time_s: FloatArray, flex_V: FloatArray, angle_time_s: FloatArray, angle_deg: FloatArray
+) -> tuple[float, float, float] | None:
+    """Mean volts, mean angle and scatter of the volts in the settled part of a hold; None where one of them was not measured."""
+    first, last = float(time_s[hold.first]), float(time_s[hold.last])
+    began = first + SETTLED * (last - first)
+    volts = flex_V[(time_s >= began) & (time_s <= last)]
+    angles = angle_deg[(angle_time_s >= began) & (angle_time_s <= last)]
+    volts, angles = volts[np.isfinite(volts)], angles[np.isfinite(angles)]
+    if len(volts) < 2 or not len(angles):
+        return None
+    return float(volts.mean()), float(angles.mean()), float(volts.std(ddof=1))
+
+
+def _levels(pressure_MPa: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
+    """(H,) which level each hold is of, and the levels."""
+    found, index = np.unique(np.round(pressure_MPa, 6), return_inverse=True)
+    return index.astype(np.int64), found
+
+
+def _lack_of_fit(volts: FloatArray, angle: FloatArray, pressure: FloatArray) -> LackOfFit | None:
+    index, levels = _levels(pressure)
+    line = np.column_stack([np.ones_like(volts), volts])
+    steps = np.column_stack([np.eye(len(levels))[index], volts])
+    df = len(levels) - 1, len(volts) - len(levels) - 1
+    if df[1] < 1:
+        return None
+    left = [float(np.square(angle - m @ np.linalg.lstsq(m, angle, rcond=None)[0]).sum()) for m in (line, steps)]
+    if not left[1] > 0:
+        return None
+    F = (left[0] - left[1]) / df[0] / (left[1] / df[1])
+    return LackOfFit(F, df, float(f_distribution.sf(F, *df)))
+
+
+def _differences(pressure: FloatArray, residual: FloatArray, rising: NDArray[np.bool_]) -> FloatArray:
+    """Falling less rising at each level that was held both ways."""
+    index, levels = _levels(pressure)
+    ways = [[residual[(index == level) & (rising == way)] for way in (False, True)] for level in range(len(levels))]
+    return np.array([down.mean() - up.mean() for down, up in ways if len(down) and len(up)])

@@ -1,0 +1,174 @@
+"""PI gains from an identified plant by the SIMC rule, with the margins that they have at every operating point.
+
+Skogestad, Simple analytic rules for model reduction and PID controller tuning, J. Process Control 13, 291 (2003).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchlab.errors import InputError
+
+MAX_SENSITIVITY = 1.6
+"""Ms that gains must keep at every operating point; SIMC with a closed-loop time of one dead time has 1.59."""
+
+
+@dataclass(frozen=True)
+class Lag:
+    """A first-order plant with dead time, K·exp(−L·s)/(τ·s + 1): K in degrees per MPa, τ and L in seconds."""
+
+    gain_deg_per_MPa: float
+    lag_s: float
+    dead_time_s: float
+
+
+@dataclass(frozen=True)
+class Margins:
+    """Of a loop: factor on its gain to instability; phase left where its gain is 1; additional dead time to instability; Ms, the largest
+    |1/(1 + loop)|; how slow it is: frequency at which its gain is 1. Infinite where there is no such frequency."""
+
+    gain_margin: float
+    phase_margin_deg: float
+    delay_margin_s: float
+    max_sensitivity: float
+    crossover_rad_per_s: float
+
+    @property
+    def stable(self) -> bool:
+        return self.gain_margin > 1 and self.phase_margin_deg > 0
+
+
+@dataclass(frozen=True)
+class Tuning:
+    """Gains, how they were found, and what they have. closed_loop_s: SIMC's τc. lead_s: lag and dead time, the preview for a feed-forward.
+    margins: at each operating point, in their order; worst: index of the one with the largest Ms."""
+
+    kp_MPa_per_deg: float
+    ki_MPa_per_deg_s: float
+    closed_loop_s: float
+    lead_s: float
+    margins: tuple[Margins, ...]
+    worst: int
+
+
+def simc(plant: Lag, closed_loop_s: float) -> tuple[float, float]:
+    """(kp, ki): kp = τ/(K·(τc + L)), ki = kp/min(τ, 4·(τc + L)) (Skogestad 2003, Eqs 23 and 24).
+
+    >>> [round(gain, 3) for gain in simc(Lag(1.0, 8.0, 1.0), closed_loop_s=1.0)]
+    [4.0, 0.5]
+    """
+    slowest = closed_loop_s + plant.dead_time_s
+    kp = plant.lag_s / (plant.gain_deg_per_MPa * slowest)
+    return kp, kp / min(plant.lag_s, 4 * slowest)
+
+
+def margins(kp: float, ki: float, plant: Lag) -> Margins:
+    """Margins of a PI, kp + ki/s, on a plant, from the frequency response of the continuous loop.
+
+    With ki = kp/τ they have closed forms: with k = kp·K/τ, phase margin π/2 − k·L, gain margin π/(2·k·L).
+
+    >>> found = margins(0.5, 0.5, Lag(1.0, 1.0, 1.0))  # SIMC with τc = L
+    >>> round(found.gain_margin, 2), round(found.phase_margin_deg, 1), round(found.max_sensitivity, 2)
+    (3.14, 61.4, 1.59)
+    """
+    if kp == 0 and ki == 0:
+        return Margins(math.inf, math.inf, math.inf, 1.0, 0.0)
+    K, lag, dead = plant.gain_deg_per_MPa, plant.lag_s, plant.dead_time_s
+    w = np.geomspace(1e-4 / max(lag, dead), 3e3 / min(lag, dead or lag), 20_000)
+    size = K * np.hypot(kp, ki / w) / np.hypot(1, lag * w)
+    phase = np.arctan2(kp * w, ki) - math.pi / 2 - np.arctan(lag * w) - dead * w
+    crossings = _falling(w, np.log(size))
+    turned = _falling(w, phase + math.pi)
+    gain_margin = min((1 / float(np.interp(x, w, size)) for x in turned), default=math.inf)
+    left = [(math.pi + float(np.interp(x, w, phase)), x) for x in crossings]
+    near = (w < 30 * max(crossings, default=1 / lag)) | (w < (10 * math.pi / dead if dead else 0))
+    loop = size * np.exp(1j * phase)
+    return Margins(
+        gain_margin=gain_margin,
+        phase_margin_deg=math.degrees(min((rad for rad, _ in left), default=math.inf)),
+        delay_margin_s=min((rad / x for rad, x in left), default=math.inf),
+        max_sensitivity=max(1.0, float(np.max(1 / np.abs(1 + loop[near])))),
+        crossover_rad_per_s=max(crossings, default=0.0),
+    )
+
+
+def tune(
+    plants: Sequence[Lag],
+    rate_Hz: float,
+    closed_loop_s: float | None = None,
+    max_sensitivity: float = MAX_SENSITIVITY,
+) -> Tuning:
+    """SIMC gains for a plant known at several operating points, safe at all of them.
+
+    The rule gets the largest gain, the longest dead time and the median lag; half a period of the loop is added to each dead time for
+    the output that is held between samples. τc begins at the dead time (SIMC's choice) and is lengthened until Ms is at most
+    max_sensitivity at every operating point. closed_loop_s: τc as it is wished; it is refused where Ms is larger than wished.
+
+    Raises InputError for no plant, for one with a gain, lag or dead time that no bench has, and where no gains are safe.
+    """
+    _check(plants)
+    held = [Lag(p.gain_deg_per_MPa, p.lag_s, p.dead_time_s + 0.5 / rate_Hz) for p in plants]
+    one = Lag(
+        max(p.gain_deg_per_MPa for p in held),
+        float(np.median([p.lag_s for p in held])),
+        max(p.dead_time_s for p in held),
+    )
+    wished = one.dead_time_s if closed_loop_s is None else closed_loop_s
+    found = _tuned(one, held, wished)
+    if closed_loop_s is not None and not _safe(found, max_sensitivity):
+        raise InputError(
+            f"a closed-loop time of {closed_loop_s:g} s gives Ms {found.margins[found.worst].max_sensitivity:.3g} where at most "
+            f"{max_sensitivity:g} is wanted",
+            hint="ask for a longer one, or leave it to the rule",
+        )
+    for _ in range(80):
+        if _safe(found, max_sensitivity):
+            return found
+        wished *= 1.1
+        found = _tuned(one, held, wished)
+    raise InputError(
+        f"no gains keep Ms under {max_sensitivity:g} at every operating point: their lags and gains differ too much",
+        hint="identify over a smaller range of pressure",
+    )
+
+
+def _tuned(one: Lag, plants: Sequence[Lag], closed_loop_s: float) -> Tuning:
+    kp, ki = simc(one, closed_loop_s)
+    found = tuple(margins(kp, ki, plant) for plant in plants)
+    worst = int(np.argmax([m.max_sensitivity if m.stable else math.inf for m in found]))
+    lead = float(np.median([p.lag_s + p.dead_time_s for p in plants]))
+    return Tuning(kp, ki, closed_loop_s, lead, found, worst)
+
+
+def _safe(found: Tuning, max_sensitivity: float) -> bool:
+    return all(m.stable and m.max_sensitivity <= max_sensitivity for m in found.margins)
+
+
+def _check(plants: Sequence[Lag]) -> None:
+    if not plants:
+        raise InputError("no operating point to tune for", hint="identify the plant from a run with steps")
+    for number, plant in enumerate(plants, start=1):
+        demands = {
+            "a gain above 0 (pressure must bend it)": 0 < plant.gain_deg_per_MPa < math.inf,
+            "a lag above 0": 0 < plant.lag_s < math.inf,
+            "a dead time of 0 or more": 0 <= plant.dead_time_s < math.inf,
+        }
+        for demand, met in demands.items():
+            if not met:
+                what = (
+                    f"gain {plant.gain_deg_per_MPa:g} °/MPa, lag {plant.lag_s:g} s, dead time {plant.dead_time_s:g} s"
+                )
+                raise InputError(
+                    f"{what} cannot be tuned: it needs {demand}", where=f"operating point {number} of {len(plants)}"
+                )
+
+
+def _falling(w: np.ndarray, values: np.ndarray) -> list[float]:
+    """Where values, over w, go through 0 from above."""
+    at = np.flatnonzero((values[:-1] > 0) & (values[1:] <= 0))
+    share = values[at] / (values[at] - values[at + 1])
+    return [float(x) for x in w[at] + share * (w[at + 1] - w[at])]
