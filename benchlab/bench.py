@@ -109,12 +109,17 @@ class Bench:
         return min(volts, self.volts(DAC_CODES - 1))
 
     def code(self, pressure_MPa: float) -> int:
-        """The DAC's code for a pressure, rounded down. LimitError for a pressure that is negative, not a number or above the ceiling."""
+        """The DAC's code for a pressure, rounded down; 0, which vents, for 0 MPa whatever the regulator's offset.
+
+        LimitError for a pressure that is negative, not a number or above the ceiling.
+        """
         if not 0 <= pressure_MPa <= self.ceiling_MPa + 1e-12:
             raise LimitError(
                 f"{pressure_MPa:g} MPa is outside 0 to {self.ceiling_MPa:.4g} MPa, the limit of bench {self.name}",
                 hint="ask for less" if self.calibrated else "calibrate the bench with `benchlab bench calibrate`",
             )
+        if pressure_MPa == 0:
+            return 0
         return min(self._floor_code(self.regulator.inverse(pressure_MPa)), self.ceiling_code)
 
     def volts(self, code: int) -> float:

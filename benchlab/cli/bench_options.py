@@ -13,13 +13,16 @@ BENCHES = "twin | twin:FILE | serial:PORT | emulated"
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 
-def bench_option(also: str = "", default: str | None = "twin") -> Callable[[Command], Command]:
-    """`--bench`, as `bench`. also: further kinds that this command knows, as `replay:FILE`. default None: it must be given."""
+def bench_option(
+    also: str = "", default: str | None = "twin", required: bool | None = None
+) -> Callable[[Command], Command]:
+    """`--bench`, as `bench`. also: further kinds that this command knows, as `replay:FILE`. default None: it must be given, unless
+    required is False."""
     kinds = f"{BENCHES} | {also}" if also else BENCHES
     return click.option(
         "--bench",
         metavar="BENCH",
-        required=default is None,
+        required=default is None if required is None else required,
         default=default,
         show_default=default is not None,
         help=f"{kinds}. `benchlab bench ports` lists the ports. A twin is simulated, and what it writes says so.",
