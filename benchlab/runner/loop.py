@@ -112,20 +112,25 @@ class Loop:
         """Hold what was asked for last, with guards and journal at work, until it goes on: the plan's time stands still."""
         began = self.clock.now_s()
         self.journal.event("pause", tick=index, time_s=began)
-        held = 0
+        try:
+            cause = self._hold(max(0, index - 1), began)
+        finally:
+            now = self.clock.now_s()
+            self.paused_s += now - began
+        self.shift_s, self._controlling = now - time_s, False
+        if cause is None:
+            self.journal.event("resume", tick=index, time_s=now)
+        return cause
+
+    def _hold(self, index: int, began_s: float) -> Cause | None:
+        held, period_s = 0, 1 / self.plan.rate_Hz
         while self.stop.paused:
-            if (lasted := self.clock.now_s() - began) >= self.pause_limit_s:
-                self.paused_s += lasted
+            if held * period_s >= self.pause_limit_s:
                 return Cause("pause", f"a pause lasts {self.pause_limit_s:g} s at most, and nobody resumed")
-            cause = self._tick(max(0, index - 1), began + held / self.plan.rate_Hz, self._command_MPa, NAN, held=True)
+            cause = self._tick(index, began_s + held * period_s, self._command_MPa, NAN, held=True)
             held += 1
-            if cause := cause or self._wait(began + held / self.plan.rate_Hz):
+            if cause := cause or self._wait(began_s + held * period_s):
                 return cause
-        now = self.clock.now_s()
-        self.journal.event("resume", tick=index, time_s=now)
-        self.paused_s += now - began
-        self.shift_s = now - time_s
-        self._controlling = False
         return None
 
     def _asked(self, index: int, pressure_MPa: float, reference_deg: float) -> float:

@@ -28,13 +28,8 @@ class SensorGuard:
             return None
         value = self.value(tick)
         good = self.low <= value <= self.high
-        if not good or self.bad.for_s:
-            if self.bad.count(tick.time_s, not good) >= self.limits.sensor_s:
-                return Cause(
-                    "sensor", f"{self._fault(value)} for {self.bad.for_s:.2g} s: look at the sensor and its wires"
-                )
-        else:
-            self.bad.count(tick.time_s, False)
+        if self.bad.count(tick.time_s, not good) >= self.limits.sensor_s:
+            return Cause("sensor", f"{self._fault(value)} for {self.bad.for_s:.2g} s: look at the sensor and its wires")
         return self._stuck(tick, value)
 
     def _fault(self, value: float) -> str:

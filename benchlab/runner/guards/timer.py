@@ -14,10 +14,11 @@ class Timer:
         self.for_s, self._last = 0.0, math.nan
 
     def count(self, time_s: float, so: bool) -> float:
+        """Seconds that it has been so, at time_s, with a nanosecond for the rounding of sums."""
         passed = time_s - self._last if self._last == self._last else 0.0
         self._last = time_s
         self.for_s = max(0.0, self.for_s + (passed if so else -passed))
-        return self.for_s
+        return self.for_s + 1e-9
 
 
 class Lag:

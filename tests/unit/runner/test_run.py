@@ -1,0 +1,304 @@
+"""The loop: what is asked at which tick, and what comes first at every end."""
+
+from __future__ import annotations
+
+import math
+import signal
+from typing import Any
+
+import numpy as np
+import pytest
+
+from benchlab.devices.interface import Fault, LostError, Status
+from benchlab.errors import BenchError, InputError
+from benchlab.protocol.plan import PlanEvent
+from benchlab.runner.clock import VirtualClock
+from benchlab.runner.end import RunEnd
+from benchlab.runner.guards.limits import Limits
+from benchlab.runner.run import execute
+from benchlab.runner.stop import QUIT, SIGNALS, Stop
+from tests.unit.runner.fakes import BENCH, BusyClock, FakeDevice, FakeJournal, plan_of, ramp
+
+
+def run(
+    pressure: np.ndarray | None = None, device: FakeDevice | None = None, **options: Any
+) -> tuple[RunEnd, Any, Any]:
+    """A run on the fake bench; device and journal share one log of what came after what."""
+    device = device or FakeDevice()
+    journal = options.pop("journal", None) or FakeJournal(device.calls)
+    plan = options.pop("plan", None) or plan_of(ramp() if pressure is None else pressure)
+    clock = options.pop("clock", None) or VirtualClock()
+    return execute(plan, device, BENCH, journal, clock, **options), device, journal
+
+
+def test_each_tick_of_the_plan_is_asked_once_at_its_time_and_written() -> None:
+    pressure = ramp()
+    end, device, journal = run(pressure)
+    assert (end.reason, end.vented, end.exit_code, end.ticks) == ("completed", True, 0, len(pressure))
+    assert [p for _, p, _ in device.asked] == pressure.tolist()
+    assert np.allclose([t for t, _, _ in device.asked], np.arange(len(pressure)) / 100)
+    assert [s[0] for s in journal.samples] == list(range(len(pressure)))
+    assert device.calls[0] == "arm" and device.calls[-2:] == ["vent", "stop"]
+    assert journal.events[-1] == ("stop", end.record())
+    last = journal.samples[-1]
+    assert last[5] == 0.3 and last[6] == pytest.approx(BENCH.volts(BENCH.code(0.3))) and last[7] == BENCH.code(0.3)
+    assert last[10] == pytest.approx(90.0, abs=0.1) and math.isnan(last[11])
+
+
+def test_marks_and_triggers_come_at_the_first_tick_at_or_after_their_time() -> None:
+    events = (PlanEvent(0.5, "trigger"), PlanEvent(0.501, "mark", "loose"), PlanEvent(9.0, "mark", "after the end"))
+    _, device, journal = run(plan=plan_of(ramp(), events=events))
+    assert [i for i, (_, _, trigger) in enumerate(device.asked) if trigger] == [50]
+    told = [(kind, c["tick"], c["text"]) for kind, c in journal.events if kind != "stop"]
+    assert told == [("trigger", 50, ""), ("mark", 51, "loose"), ("mark", 299, "after the end")]
+
+
+def test_late_ticks_are_all_done_and_say_how_late_they_are() -> None:
+    stall = BusyClock(lambda t: 0.1 if 1.0 <= t < 1.01 else 0.0)
+    end, device, journal = run(clock=stall)
+    assert end.reason == "completed" and end.ticks == len(device.asked) == 300
+    late = np.array([s[3] for s in journal.samples])
+    assert (
+        late.max() == pytest.approx(0.1, abs=1e-6) and (late > 1e-6).sum() == 10
+    )  # 100 ms are ten ticks, caught up at once
+    assert end.late_ms is not None and end.late_ms["max"] == pytest.approx(100.0) and end.late_ms["p50"] < 1e-6
+
+
+def test_too_late_is_not_sent_any_more() -> None:
+    asleep = BusyClock(lambda t: 4.0 if 1.0 <= t < 1.01 else 0.0)
+    end, device, _ = run(clock=asleep)
+    assert end.reason == "overrun" and "4 s after its deadline, more than 0.25 s" in end.cause.words
+    assert end.exit_code == 5 and end.vented and len(device.asked) == end.ticks == 100
+
+
+def test_a_slow_bench_overruns_and_is_not_skipped() -> None:
+    clock = BusyClock(lambda t: 0.0)
+
+    def slow(n: int, fields: dict[str, Any]) -> None:
+        clock.now += 0.012
+
+    end, _, journal = run(
+        device=FakeDevice(slow), clock=clock, plan=plan_of(np.zeros(600)), limits=Limits(late_s=0.2499)
+    )
+    assert end.reason == "overrun"
+    assert [s[0] for s in journal.samples] == list(range(125))  # 2 ms behind a tick: 250 ms after 125 of them
+
+
+ERRORS = [
+    (LostError("no answer for 0.5 s"), "lost", 5),
+    (BenchError("the device refuses"), "refused", 5),
+    (RuntimeError("wrong"), "bug", 1),
+    (KeyboardInterrupt(), "interrupted", 130),
+]
+
+
+@pytest.mark.parametrize(("error", "reason", "code"), ERRORS, ids=[e[1] for e in ERRORS])
+def test_whatever_is_raised_the_vent_comes_before_the_record(error: BaseException, reason: str, code: int) -> None:
+    def fail(n: int, fields: dict[str, Any]) -> None:
+        if n == 120:
+            raise error
+
+    end, device, journal = run(device=FakeDevice(fail))
+    assert (end.reason, end.exit_code, end.ticks, end.vented) == (reason, code, 120, True)
+    assert device.calls[-3:] == ["exchange", "vent", "stop"]
+    assert journal.events[-1][1]["words"] == end.cause.words and end.cause.error is error
+
+
+def test_a_device_that_does_not_arm_is_vented_and_never_asked() -> None:
+    device = FakeDevice()
+
+    def refuse() -> None:
+        raise BenchError("not now")
+
+    device.arm = refuse
+    end, device, _ = run(device=device)
+    assert end.reason == "refused" and device.asked == [] and device.calls == ["vent", "stop"] and end.late_ms is None
+
+
+def test_a_full_disk_vents_and_says_so() -> None:
+    device = FakeDevice()
+    journal = FakeJournal(device.calls)
+
+    def full(*values: Any) -> None:
+        if len(journal.samples) == 100:
+            raise InputError("could not be written: no space left on device", file="a.journal")
+        journal.samples.append(values)
+
+    journal.sample = full
+    end, device, _ = run(device=device, journal=journal)
+    assert (end.reason, end.exit_code, end.vented) == ("journal", 3, True)
+    assert "no space left" in end.cause.words and device.calls[-2:] == ["exchange", "vent"]
+    assert end.ticks == 101 and len(journal.samples) == 100
+
+
+def test_a_disk_that_is_full_at_the_stop_record_leaves_the_cause_and_says_the_trouble() -> None:
+    journal = FakeJournal()
+
+    def full(*_: Any, **__: Any) -> None:
+        raise InputError("no space left", file="a.journal")
+
+    journal.event = full
+    end, _, _ = run(journal=journal)
+    assert end.reason == "completed" and "no space left" in end.trouble
+
+
+def test_above_the_limit_nothing_is_sent() -> None:
+    pressure = ramp()
+    pressure[200:] = 0.3501
+    end, device, _ = run(pressure)
+    assert end.reason == "limit" and end.exit_code == 5
+    assert len(device.asked) == 200 and max(p for _, p, _ in device.asked) <= 0.35
+    end, device, _ = run(plan=plan_of(ramp(), limit_MPa=0.2))
+    assert end.reason == "limit" and max(p for _, p, _ in device.asked) <= 0.2
+
+
+@pytest.mark.parametrize("wrong", [math.nan, -0.01, math.inf])
+def test_a_controller_that_asks_nonsense_is_a_stop(wrong: float) -> None:
+    class Mad:
+        lead_s = 0.0
+
+        def start(self, pressure_MPa: float) -> None: ...
+
+        def pressure_MPa(self, reference_deg: float, ahead_deg: float, angle_deg: float, dt_s: float) -> float:
+            return wrong
+
+    pressure, reference = ramp(), np.full(300, np.nan)
+    pressure[250:], reference[250:] = np.nan, 90.0
+    end, device, _ = run(plan=plan_of(pressure, reference_deg=reference), controller=Mad())
+    assert end.reason == "limit" and len(device.asked) == 250
+
+
+def test_the_controller_starts_at_the_last_pressure_and_sees_reference_and_what_lies_ahead() -> None:
+    class Spy:
+        lead_s = 0.05
+
+        def __init__(self) -> None:
+            self.starts: list[float] = []
+            self.seen: list[tuple[float, float, float, float]] = []
+
+        def start(self, pressure_MPa: float) -> None:
+            self.starts.append(pressure_MPa)
+
+        def pressure_MPa(self, *seen: float) -> float:
+            self.seen.append(seen)
+            return 0.2
+
+    pressure, reference = ramp(), np.full(300, np.nan)
+    pressure[200:280], reference[200:280] = np.nan, np.linspace(60, 99.5, 80)
+    pressure[280:] = 0.0
+    spy = Spy()
+    end, device, journal = run(plan=plan_of(pressure, reference_deg=reference), controller=spy)
+    assert end.reason == "completed" and spy.starts == [0.3] and len(spy.seen) == 80
+    first, last = spy.seen[0], spy.seen[-1]
+    assert first == (60.0, pytest.approx(62.5), pytest.approx(90.0, abs=0.1), 0.01)
+    assert last[:2] == (99.5, 99.5) and last[2] == pytest.approx(60.0, abs=0.1)
+    assert [p for _, p, _ in device.asked[200:280]] == [0.2] * 80 and journal.samples[210][11] == reference[210]
+
+
+def test_an_open_pressure_without_a_controller_is_a_bug_that_vents() -> None:
+    end, _, _ = run(plan=plan_of(np.full(10, np.nan), reference_deg=np.full(10, 5.0)))
+    assert end.reason == "bug" and end.vented
+
+
+def test_a_vent_is_tried_again_and_one_that_nobody_confirms_is_told() -> None:
+    end, device, _ = run(device=FakeDevice(vent_fails=2))
+    assert end.vented and device.calls.count("vent") == 3 and end.exit_code == 0
+    end, device, journal = run(device=FakeDevice(vent_fails=99))
+    assert not end.vented and end.exit_code == 5 and "nobody answers" in end.vent_words
+    assert journal.events[-1][1]["vented"] is False
+
+
+def test_faults_are_written_each_and_counted() -> None:
+    device = FakeDevice()
+
+    def fault(n: int, fields: dict[str, Any]) -> None:
+        if n == 50:
+            device.pending.append(Fault("bad CRC, dropped", 2))
+
+    device.change = fault
+    end, _, journal = run(device=device)
+    assert end.reason == "completed" and end.faults == 2
+    assert [c for k, c in journal.events if k == "fault"] == [
+        {"cause": "bad CRC, dropped", "count": 2, "time_s": pytest.approx(0.5)}
+    ]
+
+
+def test_the_sample_that_stopped_the_run_is_written_after_the_vent() -> None:
+    def reboot(n: int, fields: dict[str, Any]) -> None:
+        if n == 70:
+            fields["status"] = Status.REBOOTED
+
+    end, device, journal = run(device=FakeDevice(reboot))
+    assert end.reason == "rebooted" and end.ticks == 71 == len(journal.samples)
+    assert device.calls[-4:] == ["exchange", "vent", "sample", "stop"]
+
+
+@pytest.mark.parametrize("name", SIGNALS)
+def test_a_signal_ends_the_run_between_ticks_and_a_second_one_changes_nothing(name: str) -> None:
+    stop = Stop()
+
+    def at(tick: Any) -> None:
+        if tick.index >= 40:
+            stop.on_signal(getattr(signal, name), None)
+
+    end, _, _ = run(stop=stop, on_tick=at)
+    assert (end.reason, end.exit_code, end.ticks, end.vented) == (SIGNALS[name].reason, 130, 41, True)
+    stop._asked_at -= 5
+    stop.on_signal(signal.SIGINT, None)  # while it vents, and after
+    assert stop.cause == SIGNALS[name]
+
+
+def test_a_second_interrupt_gets_through_to_a_loop_that_hangs_and_still_vents() -> None:
+    stop = Stop()
+
+    def hang(n: int, fields: dict[str, Any]) -> None:
+        if n == 30:
+            stop.on_signal(signal.SIGINT, None)
+            stop._asked_at -= 2  # two seconds later, nothing has happened
+            stop.on_signal(signal.SIGINT, None)
+
+    end, _, _ = run(device=FakeDevice(hang), stop=stop)
+    assert end.reason == "interrupted" and end.vented and end.ticks == 30
+    stop.on_signal(signal.SIGINT, None)  # a third one is without effect
+
+
+def test_the_key_q_stops_too() -> None:
+    stop = Stop()
+    end, _, _ = run(stop=stop, on_tick=lambda tick: stop.ask(QUIT) if tick.index == 3 else None)
+    assert end.reason == "quit" and end.exit_code == 130 and end.ticks == 4
+
+
+def test_in_a_pause_the_pressure_holds_and_the_plan_stands_still() -> None:
+    stop = Stop()
+
+    def pause(tick: Any) -> None:
+        if (tick.index == 100 and not tick.held) or (tick.held and tick.time_s > 3.0):
+            stop.toggle_pause()
+
+    pressure = ramp()
+    end, device, journal = run(pressure, stop=stop, on_tick=pause)
+    assert end.reason == "completed" and end.ticks == 300 and end.paused_s == pytest.approx(2.0, abs=0.03)
+    held = [s for s in journal.samples if s[0] == 100]
+    assert len(held) == pytest.approx(201, abs=2) and {s[5] for s in held} == {pressure[100]}
+    assert [p for _, p, _ in device.asked][-199:] == pressure[101:].tolist()
+    assert journal.kinds() == ["pause", "resume", "stop"]
+    assert np.allclose(np.diff([t for t, _, _ in device.asked]), 0.01, atol=1e-6)  # kept alive throughout
+
+
+def test_a_pause_ends_in_a_vent_after_its_limit() -> None:
+    stop = Stop()
+    end, _, _ = run(stop=stop, pause_limit_s=1.5, on_tick=lambda t: t.index == 10 and setattr(stop, "paused", True))
+    assert (end.reason, end.exit_code, end.ticks) == ("pause", 5, 11)
+    assert end.vented and end.paused_s == pytest.approx(1.5, abs=0.02)
+
+
+def test_a_wish_to_stop_counts_in_a_pause() -> None:
+    stop = Stop()
+
+    def wish(tick: Any) -> None:
+        stop.paused = stop.paused or tick.index == 10
+        if tick.held and tick.time_s > 0.5:
+            stop.ask(QUIT)
+
+    end, _, _ = run(stop=stop, on_tick=wish)
+    assert end.reason == "quit" and end.paused_s > 0.3
