@@ -37,7 +37,7 @@ class InverseCurve:
             raise InputError("the response curve has points that are not numbers", hint="leave them out")
         if len(p) and p[0] > 0:
             p, angle = np.concatenate([[0.0], p]), np.concatenate([[0.0], angle])
-        last = int(np.searchsorted(p, ceiling_MPa)) + 1
+        last = int(np.searchsorted(p, ceiling_MPa - 1e-9)) + 1
         p, angle = p[:last], angle[:last]
         if len(p) < 2:
             raise InputError("a response curve needs two points", hint="simulate more pressures")

@@ -30,7 +30,7 @@ LEAST_LEVELS = 3
 
 @dataclass(frozen=True)
 class LackOfFit:
-    """F test of a line against a line with a step at each level; df: its degrees of freedom."""
+    """F of the levels' mean distances from the line over the scatter within levels, with its degrees of freedom and p."""
 
     F: float
     df: tuple[int, int]
@@ -84,8 +84,8 @@ def calibrate_flex(
     over angle_time_s (A,) on the same clock, at any rate; NaN where a value is missing.
 
     Of each hold the second half is averaged. Straightness: a quadratic term, and, where levels of pressure were held more than once,
-    lack of fit for near replicates (Shillington, Canad. J. Statist. 7, 137, 1979): angles at a level differ a little from time to
-    time, so each level gets a step on a common line, and the scatter within levels about it is the error.
+    lack of fit (Draper & Smith, Applied Regression Analysis, ch. 2). Angles at a level differ a little from time to time and both angle and
+    volts have noise, so distances from the line are compared between and within levels, not angles at the same volts.
 
     Raises InputError for fewer than four usable holds or three levels, and where volts do not follow the angle.
     """
@@ -110,14 +110,15 @@ def calibrate_flex(
             hint="is the flex sensor wired, and is the angle on the run's clock?",
         )
     rising = np.concatenate([[True], np.diff(pressure) > 0])
-    differences = _differences(pressure, angle - line.of(volts), rising)
+    residual = angle - line.of(volts)
+    differences = _differences(pressure, residual, rising)
     return FlexCalibration(
         volts=volts,
         angle_deg=angle,
         pressure_MPa=pressure,
         rising=rising,
         line=line,
-        lack_of_fit=_lack_of_fit(volts, angle, pressure),
+        lack_of_fit=_lack_of_fit(residual, pressure),
         hysteresis_deg=float(differences.mean()) if len(differences) else math.nan,
         hysteresis_max_deg=float(np.abs(differences).max()) if len(differences) else math.nan,
         sample_sd_deg=abs(line.gain.value) * math.sqrt(float(np.square(scatter_V).mean())),
@@ -144,17 +145,17 @@ def _levels(pressure_MPa: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
     return index.astype(np.int64), found
 
 
-def _lack_of_fit(volts: FloatArray, angle: FloatArray, pressure: FloatArray) -> LackOfFit | None:
+def _lack_of_fit(residual: FloatArray, pressure: FloatArray) -> LackOfFit | None:
     index, levels = _levels(pressure)
-    line = np.column_stack([np.ones_like(volts), volts])
-    steps = np.column_stack([np.eye(len(levels))[index], volts])
-    df = len(levels) - 1, len(volts) - len(levels) - 1
+    df = len(levels) - 2, len(residual) - len(levels)
     if df[1] < 1:
         return None
-    left = [float(np.square(angle - m @ np.linalg.lstsq(m, angle, rcond=None)[0]).sum()) for m in (line, steps)]
-    if not left[1] > 0:
+    count = np.bincount(index)
+    mean = np.bincount(index, residual) / count
+    within = float(np.square(residual - mean[index]).sum()) / df[1]
+    if not within > 0:
         return None
-    F = (left[0] - left[1]) / df[0] / (left[1] / df[1])
+    F = float(count @ np.square(mean)) / df[0] / within
     return LackOfFit(F, df, float(f_distribution.sf(F, *df)))
 
 

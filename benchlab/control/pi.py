@@ -14,11 +14,11 @@ class PI:
     """u = kp·e + ki·∫e dt with e = reference − measured, u held between 0 and the ceiling.
 
     kp in MPa per degree, ki in MPa per degree and second. The integral is by trapezoids, which is exact for errors that are linear
-    between samples, whatever the time between them. Anti-windup is by conditional integration: while u is beyond a limit, the integral
-    takes no step that drives it farther (Åström and Hägglund, Advanced PID Control, 2006, section 3.5); why this and not
-    back-calculation stands in docs/decisions/0019. It starts without a bump: the first pressure is the one it is started at.
+    between samples, whatever the time between them. Anti-windup is by conditional integration: of a step of the integral only so much is
+    taken as does not drive u beyond a limit (Åström and Hägglund, Advanced PID Control, 2006, section 3.5); why this and
+    not back-calculation stands in docs/decisions/0019. It starts without a bump: the first pressure is the one it is started at.
 
-    limited: calls so far whose pressure was cut at a limit. Raises InputError for impossible gains.
+    limited: calls so far whose pressure, or step of the integral, was cut at a limit. Raises InputError for impossible gains.
 
     >>> pi = PI(0.001, 0.01, ceiling_MPa=0.35)
     >>> pi.start(0.1)
@@ -66,19 +66,25 @@ class PI:
             return self._blind(dt_s)
         self._without_s = 0.0
         error = reference_deg - angle_deg
+        cut = False
         if math.isnan(self._integral):
             self._integral = self._given - base_MPa - self.kp * error
         else:
-            before = error if math.isnan(self._error) else self._error
-            step = self.ki * dt_s * (before + error) / 2
-            wanted = base_MPa + self.kp * error + self._integral + step
-            outward = (wanted > self.ceiling_MPa and step > 0) or (wanted < 0 and step < 0)
-            self._integral += 0.0 if outward else step
+            cut = self._integrate(base_MPa + self.kp * error, error, dt_s)
         self._error = error
         wanted = base_MPa + self.kp * error + self._integral
         self._given = min(max(wanted, 0.0), self.ceiling_MPa)
-        self.limited += wanted != self._given
+        self.limited += cut or wanted != self._given
         return self._given
+
+    def _integrate(self, rest_MPa: float, error: float, dt_s: float) -> bool:
+        """Take a step of the integral, or what the limits leave of it; whether they cut it. rest_MPa: of the pressure without it."""
+        before = error if math.isnan(self._error) else self._error
+        step = self.ki * dt_s * (before + error) / 2
+        wanted = rest_MPa + self._integral
+        taken = min(step, max(self.ceiling_MPa - wanted, 0.0)) if step > 0 else max(step, min(-wanted, 0.0))
+        self._integral += taken
+        return taken != step
 
     def _blind(self, dt_s: float) -> float:
         """The last pressure again; the integral stands still, and the time without an angle is no time of any error."""
