@@ -1,0 +1,101 @@
+"""The readings of a calibration: the bench is held at its levels, and somebody is asked what the gauge shows."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from typing import Any
+
+import click
+
+from benchlab.bench import Bench
+from benchlab.cli.bench_answers import Answers, ask_unit, ask_volts, pressure_of
+from benchlab.errors import InputError, UsageError, printable
+from benchlab.io.bench_file import SIMULATED, GaugeReading
+from benchlab.workflows.bench_hold import ThreadHold, VirtualHold
+from benchlab.workflows.bench_readings import Level, levels_MPa, take_readings, twin_gauge
+from benchlab.workflows.open_bench import open_bench, spec_of
+
+TWIN_GAUGE = "twin"
+
+UNLIKE = 2.0
+"""A reading that differs from what the nominal regulator gives by more than this factor is asked for once more."""
+
+
+def measure(text: str, gauge: str, options: dict[str, Any]) -> tuple[list[GaugeReading], float, str]:
+    """Readings, supply, and what the file says of the gauge, from an open bench."""
+    kind = spec_of(text).kind
+    if kind == "replay":
+        raise UsageError("a replay cannot be calibrated", hint="give serial:PORT")
+    simulated = gauge == TWIN_GAUGE
+    if simulated and kind != "twin":
+        raise UsageError("--gauge twin is the simulated gauge of a twin", hint=f"say which gauge is at {text}")
+    # What is not calibrated yet is driven as a bench that nobody calibrated.
+    nominal = Bench(options["name"] or kind, limit_MPa=options["limit_MPa"])
+    top = options["max_MPa"] or nominal.ceiling_MPa
+    if not 0 < top <= nominal.ceiling_MPa:
+        raise UsageError(
+            f"--max-mpa is {top:g}", hint=f"give at most {nominal.ceiling_MPa:.4g}, the most that a new bench is given"
+        )
+    with closing(open_bench(text, nominal)) as device:
+        answers = Answers()
+        supply_V = options["supply_V"] or (nominal.supply_V if simulated else ask_volts(answers))
+        if simulated:
+            with VirtualHold(device) as hold:
+                ask = twin_gauge(device)
+                readings = take_readings(
+                    hold,
+                    levels_MPa(top, options["points"]),
+                    supply_V,
+                    nominal.limit_MPa,
+                    ask,
+                    options["settle_s"],
+                    _say,
+                )
+        else:
+            unit = options["unit"] or ask_unit(answers)
+            with ThreadHold(device) as held:
+                answers.check = held.check
+                readings = take_readings(
+                    held,
+                    levels_MPa(top, options["points"]),
+                    supply_V,
+                    nominal.limit_MPa,
+                    lambda level: _ask_gauge(answers, level, unit),
+                    options["settle_s"],
+                    _say,
+                )
+            click.echo("vented", err=True)
+        for fault in device.faults():
+            _say(f"{fault.cause} ({fault.count})")
+    told = (
+        f"{SIMULATED} gauge of the twin"
+        if simulated
+        else f"{SIMULATED} bench ({kind}): {gauge}"
+        if kind != "serial"
+        else gauge
+    )
+    return readings, supply_V, told
+
+
+def _ask_gauge(answers: Answers, level: Level, unit: str) -> float:
+    """The gauge's pressure in MPa; asked again where it cannot be read, and once more where it is unlike the level."""
+    doubted = ""
+    while True:
+        way = "up" if level.rising else "down"
+        text = answers.ask(f"{level.number}/{level.of} {way}, {level.volts:.3f} V: the gauge in {unit}?")
+        try:
+            pressure = pressure_of(text, unit)
+        except InputError as error:
+            click.echo(f"  {error}", err=True)
+            continue
+        if level.asked_MPa / UNLIKE < pressure < level.asked_MPa * UNLIKE or text == doubted:
+            return pressure
+        doubted = text
+        click.echo(
+            f"  that is {pressure:.4g} MPa, where the nominal regulator gives {level.asked_MPa:.4g}; type it again if it is so",
+            err=True,
+        )
+
+
+def _say(text: str) -> None:
+    click.echo(f"  {printable(text)}", err=True)

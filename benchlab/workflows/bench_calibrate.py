@@ -1,0 +1,156 @@
+"""`benchlab bench calibrate`: gauge readings in, a bench file out."""
+
+from __future__ import annotations
+
+import datetime
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import benchlab
+from benchlab.bench import Bench, Line
+from benchlab.control.regulator_line import RegulatorFit, fit_regulator
+from benchlab.control.straight_line import Interval
+from benchlab.errors import InputError, UsageError, printable
+from benchlab.io.bench_file import BenchFile, GaugeReading, read_bench_file, write_bench_file
+from benchlab.io.files import check_new_file
+
+FEWEST_MONITOR = 4
+"""Readings with monitor volts that its line is fitted to."""
+
+
+@dataclass(frozen=True)
+class CalibrationSettings:
+    """What a bench file says besides its lines. name: of the bench. supply_V: measured with a multimeter. date: ISO."""
+
+    name: str
+    gauge: str
+    supply_V: float
+    limit_MPa: float
+    date: str
+
+
+def check_calibration_out(out: Path, overwrite: bool) -> None:
+    """Raises UsageError where the bench file could not be written at the end."""
+    if out.suffix.lower() not in (".yaml", ".yml"):
+        raise UsageError("is not a .yaml file", file=out, hint="give --out a name that ends in .yaml")
+    check_new_file(out, overwrite)
+
+
+def calibrate(readings: Sequence[GaugeReading], settings: CalibrationSettings, out: Path) -> dict[str, Any]:
+    """Fit the regulator's line, and the monitor's where its volts were read, and write the bench file.
+
+    The flex sensor's line of a file that is replaced is kept. Returns what was found, as `--json` shows it. Raises InputError for
+    readings that pressure should not rest on; then nothing is written.
+    """
+    volts, pressure, monitor = (
+        np.array([getattr(r, name) for r in readings]) for name in ("volts", "pressure_MPa", "monitor_V")
+    )
+    rising = np.array([bool(r.rising) for r in readings])
+    regulator = fit_regulator(volts, pressure, rising, "regulator")
+    wired = np.isfinite(monitor)
+    watched = (
+        fit_regulator(monitor[wired], pressure[wired], rising[wired], "monitor")
+        if wired.sum() >= FEWEST_MONITOR
+        else None
+    )
+    old = _old(out)
+    bench = Bench(
+        name=settings.name,
+        regulator=_line(regulator),
+        monitor=None if watched is None else _line(watched),
+        flex=old.bench.flex if old else None,
+        limit_MPa=settings.limit_MPa,
+        supply_V=settings.supply_V,
+        gauge=settings.gauge,
+        date=datetime.date.fromisoformat(settings.date).isoformat(),
+        calibrated=True,
+    )
+    warnings = [*regulator.warnings, *(watched.warnings if watched else ())]
+    if bench.flex is not None and old is not None:
+        warnings.append(f"the flex sensor's line is kept from the calibration of {old.bench.date}")
+    found = _summary(bench, regulator, watched, readings, warnings, out)
+    write_bench_file(out, BenchFile(bench, tuple(readings), old.flex_from if old else ""), _comment(found))
+    return found
+
+
+def _old(out: Path) -> BenchFile | None:
+    """The file that is replaced, where it is one and can be read."""
+    try:
+        return read_bench_file(out) if out.exists() else None
+    except InputError:
+        return None
+
+
+def _line(fit: RegulatorFit) -> Line:
+    def rounded(value: float) -> float:
+        return float(f"{value:.7g}")
+
+    return Line(rounded(fit.line.gain.value), rounded(fit.line.offset.value), rounded(fit.line.sd))
+
+
+def _summary(
+    bench: Bench,
+    regulator: RegulatorFit,
+    monitor: RegulatorFit | None,
+    readings: Sequence[GaugeReading],
+    warnings: Sequence[str],
+    out: Path,
+) -> dict[str, Any]:
+    return {
+        "bench": bench.name,
+        "date": bench.date,
+        "gauge": bench.gauge,
+        "supply_V": bench.supply_V,
+        "limit_MPa": bench.limit_MPa,
+        "ceiling_code": bench.ceiling_code,
+        "ceiling_V": round(bench.volts(bench.ceiling_code), 4),
+        "readings": len(readings),
+        "regulator": _fit(regulator),
+        "monitor": None if monitor is None else _fit(monitor),
+        "warnings": list(warnings),
+        "outputs": [str(out)],
+    }
+
+
+def _fit(fit: RegulatorFit) -> dict[str, Any]:
+    line = fit.line
+    return {
+        "gain_MPa_per_V": _interval(line.gain),
+        "offset_MPa": _interval(line.offset),
+        "sd_MPa": line.sd,
+        "r_squared": line.r_squared,
+        "largest_residual_MPa": float(np.abs(fit.residual_MPa).max()),
+        "bow_MPa": _interval(line.bow),
+        "bow_p": _or_none(line.bow_p),
+        "hysteresis_MPa": _or_none(fit.hysteresis_MPa),
+    }
+
+
+def _interval(found: Interval) -> dict[str, float]:
+    return {"value": found.value, "low": found.low, "high": found.high}
+
+
+def _or_none(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _comment(found: dict[str, Any]) -> str:
+    lines = [
+        f"Written by benchlab {benchlab.__version__} bench calibrate; for --calibration of benchlab run and benchlab bench.",
+        "",
+    ]
+    for name in ("regulator", "monitor"):
+        if (fit := found[name]) is not None:
+            gain, offset = fit["gain_MPa_per_V"], fit["offset_MPa"]
+            lines.append(
+                f"{name}: gain {gain['value']:.5g} MPa/V, 95 % interval {gain['low']:.5g} to {gain['high']:.5g};"
+            )
+            lines.append(f"  offset {offset['value']:.3g} MPa, {offset['low']:.3g} to {offset['high']:.3g};")
+            lines.append(f"  residual sd {fit['sd_MPa']:.2g} MPa, largest {fit['largest_residual_MPa']:.2g} MPa.")
+    lines += [printable(warning) for warning in found["warnings"]]
+    return "\n".join(lines)

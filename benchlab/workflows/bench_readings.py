@@ -1,0 +1,118 @@
+"""The levels of a calibration, up and down, and the gauge readings at them. Nothing goes up that is foreseen to cross the limit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchlab.bench import DAC_CODES
+from benchlab.devices.interface import Device
+from benchlab.errors import BenchError
+from benchlab.io.bench_file import GaugeReading
+from benchlab.workflows.bench_hold import Hold
+
+
+@dataclass(frozen=True)
+class Level:
+    """A pressure to be read off the gauge. asked_MPa: by the nominal regulator, not by the gauge. number: of `of`, from 1."""
+
+    number: int
+    of: int
+    asked_MPa: float
+    volts: float
+    monitor_V: float
+    rising: bool
+
+
+Gauge = Callable[[Level], float]
+"""Asks for the gauge's pressure in MPa while a level is held."""
+
+
+def levels_MPa(top_MPa: float, points: int) -> list[float]:
+    """Pressures to ask for: equal steps up to the top, and the same down again without the top.
+
+    >>> [round(level, 3) for level in levels_MPa(0.3, 3)]
+    [0.1, 0.2, 0.3, 0.2, 0.1]
+    """
+    up = [top_MPa * (i + 1) / points for i in range(points)]
+    return up + up[-2::-1]
+
+
+def take_readings(
+    hold: Hold,
+    levels: Sequence[float],
+    supply_V: float,
+    limit_MPa: float,
+    gauge: Gauge,
+    settle_s: float,
+    tell: Callable[[str], None],
+) -> list[GaugeReading]:
+    """Stand at each level and ask for the gauge's reading. supply_V: as measured, which turns the DAC's codes into volts.
+
+    A level above the last is left out, with all above it, where the readings so far foresee more than the limit there. Raises
+    BenchError, after which the bench is vented, for a reading above the limit.
+    """
+    readings: list[GaugeReading] = []
+    highest, stands_at = math.inf, 0.0
+    for index, asked in enumerate(levels):
+        rising = index == 0 or asked > levels[index - 1]
+        if asked >= highest or (rising and _too_high(readings, levels, index, limit_MPa)):
+            if highest == math.inf:
+                tell(f"not going up to {asked:.3f} MPa: the gauge's readings foresee more than {limit_MPa:g} MPa there")
+            highest = min(highest, asked)
+            continue
+        if asked == stands_at:
+            continue
+        recent, stands_at = hold.stand(asked, settle_s), asked
+        code = max((r.code for r in recent[-3:]), default=-1)
+        if code < 0:
+            raise BenchError("the bench does not say which code its DAC holds; vented", hint="flash the firmware again")
+        volts = supply_V * code / DAC_CODES
+        monitor = _mean([r.monitor_V for r in recent])
+        pressure = gauge(Level(index + 1, len(levels), asked, volts, monitor, rising))
+        hold.check()
+        if pressure > limit_MPa:
+            raise BenchError(
+                f"the gauge shows {pressure:.4g} MPa at {volts:.3f} V, above the limit of {limit_MPa:g} MPa; vented",
+                hint="is it the unit? else give --max-MPa less, or find out what regulator this is",
+            )
+        readings.append(GaugeReading(volts, pressure, monitor, rising))
+    return readings
+
+
+def foreseen_MPa(readings: Sequence[GaugeReading], volts: float) -> float:
+    """The pressure at these volts as the last rising readings have it: the steeper of the line through the last two and the one from 0.
+
+    >>> foreseen_MPa([GaugeReading(0.5, 0.05), GaugeReading(1.0, 0.15)], 1.5)
+    0.25
+    """
+    last = readings[-1]
+    steepest = last.pressure_MPa / last.volts if last.volts > 0 else 0.0
+    if len(readings) > 1 and last.volts > readings[-2].volts:
+        steepest = max(steepest, (last.pressure_MPa - readings[-2].pressure_MPa) / (last.volts - readings[-2].volts))
+    return last.pressure_MPa + steepest * (volts - last.volts)
+
+
+def _too_high(readings: Sequence[GaugeReading], levels: Sequence[float], index: int, limit_MPa: float) -> bool:
+    if not readings:
+        return False
+    # Volts go as the nominal pressures do.
+    volts = readings[-1].volts * levels[index] / levels[index - 1]
+    return foreseen_MPa(readings, volts) > limit_MPa
+
+
+def _mean(values: list[float]) -> float:
+    known = [value for value in values if math.isfinite(value)]
+    return float(np.mean(known)) if known else math.nan
+
+
+def twin_gauge(device: Device) -> Gauge:
+    """The simulated gauge of a twin: the pressure that is truly in it, without an error of its own. TypeError for other devices."""
+    from benchlab.devices.twin.twin import Twin
+
+    if not isinstance(device, Twin):
+        raise TypeError("only a twin knows its truth")
+    return lambda level: float(device.truth.pressure_MPa[-1])

@@ -1,0 +1,115 @@
+"""A bench is held, spoken to all the time, and vented at every end of the holding."""
+
+import time
+
+import pytest
+
+from benchlab.bench import Bench
+from benchlab.devices.interface import LostError
+from benchlab.errors import BenchError
+from benchlab.workflows.bench_hold import ThreadHold, VirtualHold
+from tests.unit.workflows.small_bench import SILENCE_S, SmallBench
+
+FAST = {"period_s": 0.005, "rise_MPa_per_s": 5.0}
+
+
+def small(**changes) -> SmallBench:
+    return SmallBench(Bench("new"), **changes)
+
+
+def test_it_is_never_silent_while_the_caller_waits() -> None:
+    device = small()
+    with ThreadHold(device) as hold:
+        hold.stand(0.02, 0.01)
+        time.sleep(3 * SILENCE_S)  # somebody reads a gauge
+        assert device.armed and device.pressure_MPa > 0
+        hold.check()
+    assert device.longest_silence_s < SILENCE_S / 2
+    assert not device.armed and device.vents == 1
+
+
+def test_a_level_is_gone_to_slowly_and_its_readings_are_of_the_end() -> None:
+    device = small()
+    with ThreadHold(device, 0.005, 0.5) as hold:
+        began = time.monotonic()
+        readings = hold.stand(0.1, 0.2)
+        assert time.monotonic() - began >= 0.2 + 0.2 - 0.01
+        assert {r.code for r in readings[-10:]} == {Bench("new").code(0.1)}
+
+
+@pytest.mark.parametrize("hold", [ThreadHold, VirtualHold])
+def test_whatever_is_raised_inside_it_vents_and_lets_it_through(hold) -> None:
+    device = small()
+    with pytest.raises(KeyboardInterrupt), hold(device, **FAST) as held:
+        held.stand(0.05, 0.01)
+        assert device.pressure_MPa > 0
+        raise KeyboardInterrupt
+    assert not device.armed and device.code == 0
+
+
+def test_the_thread_vents_so_that_no_signal_can_interrupt_it() -> None:
+    device = small()
+    with ThreadHold(device, **FAST) as hold:
+        hold.stand(0.05, 0.01)
+    assert device.vented_by == ["benchlab holds the bench"]
+
+
+@pytest.mark.parametrize("error", [LostError("pulled"), BenchError("refused"), ZeroDivisionError("a bug")])
+def test_what_ends_the_thread_reaches_whoever_waits_and_it_is_vented(error: Exception) -> None:
+    def before(n: int) -> None:
+        if n == 20:
+            raise error
+
+    device = small(before=before)
+    with pytest.raises(type(error)), ThreadHold(device, **FAST) as hold:
+        hold.stand(0.05, 5.0)
+    assert not device.armed and device.vents == 1
+
+
+def test_an_error_of_the_thread_is_seen_at_the_end_too() -> None:
+    def before(n: int) -> None:
+        if n == 20:
+            raise LostError("pulled")
+
+    with pytest.raises(LostError), ThreadHold(small(before=before), **FAST):
+        time.sleep(0.3)
+
+
+def test_a_bench_that_vented_itself_ends_the_holding() -> None:
+    device = small()
+
+    def before(n: int) -> None:
+        if n == 20:
+            device.armed = False
+
+    device.before = before
+    with pytest.raises(BenchError), ThreadHold(device, **FAST) as hold:
+        hold.stand(0.05, 5.0)
+    assert device.vents == 1
+
+
+def test_a_bench_that_refuses_to_arm_says_so() -> None:
+    class Stubborn(SmallBench):
+        def arm(self) -> None:
+            raise BenchError("its DAC does not acknowledge")
+
+    device = Stubborn(Bench("new"))
+    with pytest.raises(BenchError, match="acknowledge"), ThreadHold(device):
+        pass
+    assert device.vents == 1
+
+
+@pytest.mark.parametrize("hold", [ThreadHold, VirtualHold])
+def test_a_vent_that_nobody_confirms_is_tried_again_and_then_told_with_what_to_do(hold) -> None:
+    device = small(vent_fails=2)
+    with hold(device, **FAST):
+        pass
+    assert device.vents == 3
+    with pytest.raises(BenchError, match="NOT CONFIRMED VENTED") as told, hold(small(vent_fails=9), **FAST):
+        pass
+    assert "relief valve" in str(told.value)
+
+
+def test_an_unconfirmed_vent_is_louder_than_what_came_before_it() -> None:
+    with pytest.raises(BenchError, match="NOT CONFIRMED VENTED"), ThreadHold(small(vent_fails=9), **FAST):
+        raise KeyboardInterrupt

@@ -1,0 +1,97 @@
+"""Levels, gauge readings, and that nothing goes up that is foreseen to cross the limit."""
+
+import numpy as np
+import pytest
+
+from benchlab.bench import Bench, Line
+from benchlab.errors import BenchError
+from benchlab.workflows.bench_calibrate import CalibrationSettings, calibrate
+from benchlab.workflows.bench_hold import VirtualHold
+from benchlab.workflows.bench_readings import Level, levels_MPa, take_readings
+from tests.unit.workflows.small_bench import SmallBench
+
+NEW = Bench("new")
+
+
+def read(device: SmallBench, supply_V: float = 4.9, points: int = 8, gauge=None):
+    told: list[str] = []
+    with VirtualHold(device) as hold:
+        ask = gauge or (lambda level: device.pressure_MPa)
+        readings = take_readings(hold, levels_MPa(NEW.ceiling_MPa, points), supply_V, 0.35, ask, 0.1, told.append)
+    return readings, told
+
+
+def test_the_true_regulator_and_monitor_are_found(tmp_path) -> None:
+    device = SmallBench(NEW, Line(0.0965, -0.001), 4.9)
+    readings, told = read(device)
+    assert len(readings) == 15 and not told
+    assert [r.rising for r in readings] == [True] * 8 + [False] * 7
+    found = calibrate(
+        readings, CalibrationSettings("left", "Keller LEO 2", 4.9, 0.35, "2026-05-31"), tmp_path / "bench.yaml"
+    )
+    assert found["regulator"]["gain_MPa_per_V"]["value"] == pytest.approx(0.0965, rel=1e-9)
+    assert found["regulator"]["offset_MPa"]["value"] == pytest.approx(-0.001, abs=1e-9)
+    assert found["monitor"]["gain_MPa_per_V"]["value"] == pytest.approx(0.12, rel=1e-9)
+    assert found["ceiling_code"] == int((0.35 + 0.001) / 0.0965 / 4.9 * 4096)
+
+
+def test_a_wrong_supply_scales_the_volts_and_leaves_pressure_per_code(tmp_path) -> None:
+    """The file's gain and supply belong together: codes, which are what the bench is given, come out the same."""
+    codes = []
+    for supply_V in (4.9, 5.1):
+        readings, _ = read(SmallBench(NEW), supply_V)
+        out = tmp_path / f"{supply_V}.yaml"
+        codes.append(
+            calibrate(readings, CalibrationSettings("b", "g", supply_V, 0.35, "2026-05-31"), out)["ceiling_code"]
+        )
+    assert codes[0] == codes[1]
+
+
+def test_a_stronger_regulator_is_not_driven_across_the_limit() -> None:
+    device = SmallBench(NEW, Line(0.18, 0.0), 5.0)  # 0.9 MPa at 5 V: the nominal top level would be 0.63 MPa
+    readings, told = read(device, 5.0)
+    assert device.true.of(5.0 * device.highest_code / 4096) <= 0.35
+    assert max(r.pressure_MPa for r in readings) <= 0.35
+    assert len(told) == 1 and "foresee" in told[0]
+    assert [r.rising for r in readings] == [True, True, True, True, False, False, False]
+
+
+@pytest.mark.parametrize("gain", np.linspace(0.02, 0.5, 13))
+def test_no_regulator_is_driven_across_the_limit_once_its_first_level_is_read(gain: float) -> None:
+    device = SmallBench(NEW, Line(gain, 0.0), 5.25)
+    first = device.true.of(5.25 * NEW.code(NEW.ceiling_MPa / 8) / 4096)
+    if first > 0.35:
+        with pytest.raises(BenchError, match="above the limit"):
+            read(device, 5.25)
+    else:
+        read(device, 5.25)
+        assert device.true.of(5.25 * device.highest_code / 4096) <= 0.35 + 1e-6
+    assert not device.armed
+
+
+def test_a_reading_above_the_limit_vents_and_says_what_to_look_for() -> None:
+    device = SmallBench(NEW)
+
+    def gauge(level: Level) -> float:
+        return 0.36 if level.number == 4 else device.pressure_MPa
+
+    with pytest.raises(BenchError, match=r"above the limit of 0\.35 MPa; vented"):
+        read(device, gauge=gauge)
+    assert not device.armed and device.code == 0
+
+
+def test_a_file_that_is_replaced_leaves_its_flex_sensor(tmp_path) -> None:
+    from dataclasses import replace
+
+    from benchlab.io.bench_file import read_bench_file, write_bench_file
+
+    out = tmp_path / "bench.yaml"
+    readings, _ = read(SmallBench(NEW))
+    settings = CalibrationSettings("b", "g", 4.9, 0.35, "2026-05-31")
+    calibrate(readings, settings, out)
+    old = read_bench_file(out)
+    assert old.readings == tuple(readings)
+    write_bench_file(out, replace(old, bench=replace(old.bench, flex=Line(40.0, -60.0, 0.5)), flex_from="run 3"))
+    found = calibrate(readings, settings, out)
+    assert read_bench_file(out).bench.flex == Line(40.0, -60.0, 0.5) and read_bench_file(out).flex_from == "run 3"
+    assert any("kept" in w for w in found["warnings"])
