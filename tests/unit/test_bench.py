@@ -35,7 +35,7 @@ def test_a_code_never_gives_more_than_was_asked_for_nor_than_the_limit(bench: Be
 def test_a_code_is_the_last_that_does_not_give_more(bench: Bench, part: float) -> None:
     asked = part * bench.ceiling_MPa
     code = bench.code(asked)
-    assume(0 < asked and code < bench.ceiling_code)
+    assume(asked > 0 and code < bench.ceiling_code)
     assert bench.regulator.of(bench.volts(code + 1)) > asked - TINY_MPA
 
 
