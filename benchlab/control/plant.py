@@ -27,8 +27,8 @@ LARGEST_STEP_MPA = 0.1
 """A larger step is of no one operating point, the response curve being bent."""
 
 LONGEST_DEAD_TIME_S = 0.5
-LEAST_R_SQUARED = 0.9
-"""A stretch of a run that the model explains less of is left out."""
+LEAST_R_SQUARED = 0.5
+"""A stretch of a run that the model explains less of is left out; with more, the intervals say how well it is known."""
 
 
 @dataclass(frozen=True)

@@ -105,8 +105,9 @@ def tune(
     """SIMC gains for a plant known at several operating points, safe at all of them.
 
     The rule gets the largest gain, the longest dead time and the median lag; half a period of the loop is added to each dead time for
-    the output that is held between samples. τc begins at the dead time (SIMC's choice) and is lengthened until Ms is at most
-    max_sensitivity at every operating point. closed_loop_s: τc as it is wished; it is refused where Ms is larger than wished.
+    the output that is held between samples. τc is the shortest with which Ms is at most max_sensitivity at every operating point: for
+    one plant about its dead time, which is SIMC's choice for fast control. closed_loop_s: τc as it is wished; it is
+    refused where Ms is larger than that.
 
     Raises InputError for no plant, for one with a gain, lag or dead time that no bench has, and where no gains are safe.
     """
@@ -117,23 +118,30 @@ def tune(
         float(np.median([p.lag_s for p in held])),
         max(p.dead_time_s for p in held),
     )
-    wished = one.dead_time_s if closed_loop_s is None else closed_loop_s
-    found = _tuned(one, held, wished)
-    if closed_loop_s is not None and not _safe(found, max_sensitivity):
+    if closed_loop_s is not None:
+        found = _tuned(one, held, closed_loop_s)
+        if not _safe(found, max_sensitivity):
+            raise InputError(
+                f"a closed-loop time of {closed_loop_s:g} s gives Ms {found.margins[found.worst].max_sensitivity:.3g} where at most "
+                f"{max_sensitivity:g} is wanted",
+                hint="ask for a longer one, or leave it to the rule",
+            )
+        return found
+    return _fastest(one, held, max_sensitivity)
+
+
+def _fastest(one: Lag, plants: Sequence[Lag], max_sensitivity: float) -> Tuning:
+    """The shortest safe τc, to a thousandth, between a tenth of the dead time and a thousand times it."""
+    low, high = math.log(0.1 * one.dead_time_s), math.log(1000 * one.dead_time_s)
+    if not _safe(_tuned(one, plants, math.exp(high)), max_sensitivity):
         raise InputError(
-            f"a closed-loop time of {closed_loop_s:g} s gives Ms {found.margins[found.worst].max_sensitivity:.3g} where at most "
-            f"{max_sensitivity:g} is wanted",
-            hint="ask for a longer one, or leave it to the rule",
+            f"no gains keep Ms under {max_sensitivity:g} at every operating point: their lags and gains differ too much",
+            hint="identify over a smaller range of pressure",
         )
-    for _ in range(80):
-        if _safe(found, max_sensitivity):
-            return found
-        wished *= 1.1
-        found = _tuned(one, held, wished)
-    raise InputError(
-        f"no gains keep Ms under {max_sensitivity:g} at every operating point: their lags and gains differ too much",
-        hint="identify over a smaller range of pressure",
-    )
+    while high - low > 1e-3:
+        middle = (low + high) / 2
+        low, high = (low, middle) if _safe(_tuned(one, plants, math.exp(middle)), max_sensitivity) else (middle, high)
+    return _tuned(one, plants, math.exp(high))
 
 
 def _tuned(one: Lag, plants: Sequence[Lag], closed_loop_s: float) -> Tuning:
