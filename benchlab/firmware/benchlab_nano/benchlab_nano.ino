@@ -74,6 +74,7 @@ static uint8_t inbox[HEAD + ASKED + CRC], in_box;
 static uint8_t twi(uint8_t what) /* do it, wait 1 ms at most; the status, or 0 where the bus hangs */
 {
     TWCR = what | (1 << TWINT) | (1 << TWEN);
+    _delay_us(12); /* a byte takes 90; simavr 1.6 shows the old TWINT and status for the first 9 */
     for (uint16_t n = 0; n < 2000; n++)
         if (TWCR & (1 << TWINT))
             return TWSR & 0xF8;
@@ -473,9 +474,10 @@ static void open_inbox(void) /* obey each whole frame in it; what is none is pas
 static void hear(void)
 {
     static uint8_t last_ms;
+    uint8_t ms = clock_ms; /* its low byte */
     if (in_tail != in_head)
-        last_ms = now_ms();
-    else if (in_box && (uint8_t)(now_ms() - last_ms) >= PARTIAL_MS) {
+        last_ms = ms;
+    else if (in_box && (uint8_t)(ms - last_ms) >= PARTIAL_MS) {
         dropped++;
         forget(1);
         open_inbox();
@@ -534,20 +536,21 @@ void setup(void)
 
 void loop(void)
 {
-    static uint32_t done_ms;
-    uint32_t ms = now_ms();
+    static uint8_t done_ms; /* low byte of the last millisecond seen to */
     wdt_reset();
-    if (ms != done_ms) {
+    if ((uint8_t)clock_ms != done_ms) {
+        uint32_t ms = now_ms();
         done_ms = ms;
         each_ms(ms);
     }
     hear();
     cli();
-    if (clock_ms == done_ms && in_tail == in_head) { /* nothing to do until the next interrupt */
+    while ((uint8_t)clock_ms == done_ms && in_tail == in_head) { /* nothing to do until an interrupt brings something */
         sleep_enable();
         sei();
         sleep_cpu();
         sleep_disable();
+        cli();
     }
     sei();
 }

@@ -1,0 +1,92 @@
+"""What is said to the Nano and what it answers, as numbers; the layouts stand in docs/firmware.md."""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+
+PROTOCOL = 1
+"""Of the frames; a firmware of another is refused."""
+
+HELLO, ARM, SET, VENT, STATUS = 1, 2, 3, 4, 5
+ADC_STEPS = 1024
+UNKNOWN_CODE = 0xFFFF
+"""Of a DAC that does not acknowledge."""
+
+_HELLO = struct.Struct("<4B6H4B")
+_ANSWER = struct.Struct("<4HI3H")
+_SET = struct.Struct("<HB")
+_ARM = struct.Struct("<H")
+CAUSES = {1: "power", 2: "reset", 4: "brown-out", 8: "watchdog"}
+
+
+@dataclass(frozen=True)
+class Hello:
+    """What the firmware tells of itself. boot: number of its boots. boot_cause: MCUSR at boot, 0 where a bootloader cleared it.
+
+    dac_eeprom: the code that the DAC takes at power-on, 65535 unknown. adc_samples: conversions in each mean.
+    """
+
+    protocol: int
+    major: int
+    minor: int
+    patch: int
+    ceiling_code: int
+    slew_codes_per_ms: int
+    silence_ms: int
+    watchdog_ms: int
+    boot: int
+    dac_eeprom: int
+    boot_cause: int
+    adc_samples: int
+    dac_address: int
+    flags: int
+
+    @property
+    def version(self) -> str:
+        return f"{self.major}.{self.minor}.{self.patch}"
+
+    @property
+    def cause(self) -> str:
+        """Of the last boot, in words."""
+        return ", ".join(word for bit, word in CAUSES.items() if self.boot_cause & bit) or "not told by the bootloader"
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """flex, monitor: sums of `adc_samples` conversions. flags: Status. micros: of the Nano's clock, from 0 again after 2³² µs."""
+
+    code: int
+    flex: int
+    monitor: int
+    flags: int
+    micros: int
+    boot: int
+    crc_errors: int
+    dropped: int
+
+
+def hello_of(payload: bytes) -> Hello | None:
+    """None where this is not a hello of this protocol."""
+    if len(payload) != _HELLO.size:
+        return None
+    return Hello(*_HELLO.unpack(payload))
+
+
+def answer_of(payload: bytes) -> Answer | None:
+    """None where this is no answer."""
+    return Answer(*_ANSWER.unpack(payload)) if len(payload) == _ANSWER.size else None
+
+
+def set_payload(code: int, trigger: bool) -> bytes:
+    """A code for the DAC, and whether to pulse the camera's output.
+
+    >>> set_payload(2867, True).hex()
+    '330b01'
+    """
+    return _SET.pack(code, trigger)
+
+
+def arm_payload(boot: int) -> bytes:
+    """Arming names the boot that it is for, so that noise and hosts of before a reboot do not arm."""
+    return _ARM.pack(boot)

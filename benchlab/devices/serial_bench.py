@@ -1,0 +1,254 @@
+"""A Nano with benchlab's firmware, over any line: a serial port, a pty, or an emulation in lockstep."""
+
+from __future__ import annotations
+
+import math
+import typing
+from contextlib import suppress
+
+from benchlab.bench import Bench, LimitError
+from benchlab.devices.interface import Fault, LostError, Reading, Status
+from benchlab.devices.messages import (
+    ADC_STEPS,
+    ARM,
+    HELLO,
+    PROTOCOL,
+    SET,
+    UNKNOWN_CODE,
+    VENT,
+    Answer,
+    Hello,
+    answer_of,
+    arm_payload,
+    hello_of,
+    set_payload,
+)
+from benchlab.devices.tally import Tally
+from benchlab.devices.transport import SerialTransport, Transport
+from benchlab.devices.wire import Wire
+from benchlab.errors import BenchError
+
+BOOT_S = 4.0
+"""A Nano resets when its port is opened, and its bootloader waits up to 2 s for a new sketch."""
+
+GARBAGE_S = 2.0
+TRY_S = 0.1
+TRIES = 5
+LOST_S = 0.5
+WHOLE_CLOCK = 1 << 32
+
+
+class SerialBench:
+    """The device of `interface`, disarmed. Made by saying hello; BenchError where nothing that fits answers.
+
+    An exchange waits for its answer for 0.8 of the time between exchanges and gives NO_ANSWER after that; LostError once nothing was
+    answered for 0.5 s. Nothing is sent twice but hello, arm and vent. A reboot is not mended: open the bench again.
+    """
+
+    def __init__(self, transport: Transport, bench: Bench, kind: str = "serial") -> None:
+        self.kind = kind
+        self._line, self._bench, self._wire, self._tally = transport, bench, Wire(), Tally()
+        self._armed = self._vented = self._closed = self._rebooted = False
+        self._offset_s: float | None = None
+        self._mute_s: float | None = None
+        self._last_s, self._period_s = -math.inf, 0.01
+        self._turns = self._micros = 0
+        try:
+            self._hello = self._say_hello()
+            self._check_hello()
+            self._boot = self._hello.boot
+            self.vent()
+        except BaseException:
+            transport.close()
+            raise
+
+    def about(self) -> dict[str, typing.Any]:
+        hello, bench = self._hello, self._bench
+        notes = []
+        if hello.ceiling_code < bench.ceiling_code:
+            notes.append(
+                f"the firmware gives at most {self.ceiling_MPa:.4g} MPa, the bench {bench.ceiling_MPa:.4g} MPa"
+            )
+        if hello.ceiling_code > bench.ceiling_code:
+            notes.append(
+                "the firmware's own ceiling lies above the bench's: write it anew with `benchlab bench firmware`"
+            )
+        if hello.dac_eeprom != 0:
+            notes.append("what the DAC gives at power-on could not be set to 0")
+        return {
+            "kind": self.kind,
+            **self._line.about(),
+            "firmware": hello.version,
+            "protocol": hello.protocol,
+            "ceiling_code": hello.ceiling_code,
+            "ceiling_MPa": self.ceiling_MPa,
+            "slew_MPa_per_s": 1000 * hello.slew_codes_per_ms * bench.volts(1) * bench.regulator.gain,
+            "silence_s": hello.silence_ms / 1000,
+            "watchdog_s": hello.watchdog_ms / 1000,
+            "adc_samples": hello.adc_samples,
+            "boot": hello.boot,
+            "boot_cause": hello.cause,
+            "dac_address": hello.dac_address,
+            "notes": notes,
+        }
+
+    @property
+    def ceiling_MPa(self) -> float:
+        """The lower one of the bench's ceiling and the firmware's."""
+        if self._hello.ceiling_code >= self._bench.ceiling_code:
+            return self._bench.ceiling_MPa
+        return self._bench.pressure_MPa(self._hello.ceiling_code)
+
+    def arm(self) -> None:
+        self._check_open()
+        if self._rebooted:
+            raise BenchError("the bench has booted since it was opened", file=self._line.name, hint="open it again")
+        answer = self._insist(ARM, arm_payload(self._boot), "arm")
+        if self._rebooted or not answer.flags & Status.ARMED:
+            cause = (
+                "its DAC does not acknowledge" if answer.flags & Status.DAC_LOST else "it has booted, or is not vented"
+            )
+            raise BenchError(f"the bench does not arm: {cause}", file=self._line.name, hint="look at its wires")
+        self._armed, self._vented, self._offset_s, self._mute_s = True, False, None, None
+
+    def exchange(self, time_s: float, pressure_MPa: float, trigger: bool = False) -> Reading:
+        code = self._bench.code(pressure_MPa)
+        self._check_open()
+        if code > self._hello.ceiling_code:
+            raise LimitError(
+                f"{pressure_MPa:g} MPa is above {self.ceiling_MPa:.4g} MPa, the firmware's ceiling",
+                file=self._line.name,
+                hint="ask for less, or write the firmware anew with `benchlab bench firmware`",
+            )
+        if pressure_MPa > 0 and not self._armed:
+            raise BenchError("the bench is not armed and gives no pressure", file=self._line.name, hint="arm it first")
+        self._follow(time_s)
+        self._vented = self._vented and code == 0
+        asked_s, patience_s = self._line.clock_s(), 0.8 * self._period_s
+        heard = self._ask(SET, set_payload(code, trigger), patience_s)
+        if heard is not None and (answer := answer_of(heard)):
+            self._mute_s = None
+            return self._reading(answer)
+        self._tally.count(f"no answer to a command within {1000 * patience_s:.0f} ms; went on without")
+        self._mute_s = asked_s if self._mute_s is None else self._mute_s
+        if self._line.clock_s() - self._mute_s > LOST_S:
+            self._armed = False
+            raise LostError(
+                f"no answer for {LOST_S:g} s", file=self._line.name, hint="was the cable pulled, or the supply lost?"
+            )
+        return Reading(math.nan, math.nan, -1, math.nan, Status.NO_ANSWER)
+
+    def vent(self) -> None:
+        if self._closed:
+            if self._vented:
+                return
+            raise LostError("closed, and nobody confirmed that it was vented", file=self._line.name)
+        self._armed = False
+        answer = self._insist(VENT, b"", "vent")
+        if answer.code != 0:
+            raise LostError("the DAC does not acknowledge, so nobody knows its output", file=self._line.name,
+                            hint="take the pressure away by hand")  # fmt: skip
+        self._vented = True
+
+    def faults(self) -> list[Fault]:
+        return self._tally.take(self._wire)
+
+    def close(self) -> None:
+        if self._closed:
+            return
+        with suppress(BenchError):
+            self.vent()
+        self._closed = True
+        self._line.close()
+
+    def _say_hello(self) -> Hello:
+        line, began = self._line, self._line.clock_s()
+        line.read(0.0)
+        garbage_since = math.inf
+        while (now := line.clock_s()) - began < BOOT_S and now - garbage_since < GARBAGE_S:
+            payload = self._ask(HELLO, b"", 2 * TRY_S)
+            if payload is not None and (hello := hello_of(payload)):
+                self._tally.start(self._wire)
+                return hello
+            if self._wire.decoder.garbage:
+                garbage_since = min(garbage_since, now)
+        if garbage := self._wire.decoder.garbage:
+            raise BenchError(
+                f"no valid frame in {line.clock_s() - began:.0f} s, but {garbage} bytes of something else",
+                file=line.name,
+                hint="is this the Nano, and is benchlab's firmware on it? see docs/firmware.md",
+            )
+        raise BenchError(
+            f"no valid frame in {line.clock_s() - began:.0f} s: nothing answers",
+            file=line.name,
+            hint="is the firmware on it (`benchlab bench firmware`), and is this the Nano's port?",
+        )
+
+    def _check_hello(self) -> None:
+        if self._hello.protocol != PROTOCOL:
+            raise BenchError(
+                f"its firmware {self._hello.version} speaks protocol {self._hello.protocol}, this benchlab {PROTOCOL}",
+                file=self._line.name,
+                hint="write this benchlab's firmware with `benchlab bench firmware` and flash it",
+            )
+
+    def _insist(self, command: int, payload: bytes, what: str) -> Answer:
+        """Ask up to TRIES times; LostError if nobody answers."""
+        for again in range(TRIES):
+            heard = self._ask(command, payload, TRY_S, again=again > 0)
+            if heard is not None and (answer := answer_of(heard)):
+                self._reading(answer)
+                return answer
+            self._tally.count(f"no answer to `{what}`; asked again")
+        raise LostError(f"nobody answered `{what}` in {TRIES * TRY_S:g} s", file=self._line.name,
+                        hint="vent by hand; the firmware vents by itself once it hears nothing")  # fmt: skip
+
+    def _ask(self, command: int, payload: bytes, timeout_s: float, again: bool = False) -> bytes | None:
+        """Send, and wait for the answer to this and no other; None where it does not come in time."""
+        line = self._line
+        line.write(self._wire.ask(command, payload, again))
+        until = line.clock_s() + timeout_s
+        while (left := until - line.clock_s()) > 0:
+            if (heard := self._wire.hear(line.read(left))) is not None:
+                return heard
+        return None
+
+    def _follow(self, time_s: float) -> None:
+        """Keep the period of the exchanges; where time is virtual, let the device run until now."""
+        if self._offset_s is None:
+            self._offset_s = self._line.clock_s() - time_s
+        elif time_s > self._last_s:
+            self._period_s += 0.1 * (min(max(time_s - self._last_s, 0.001), 0.02) - self._period_s)
+        self._last_s = time_s
+        self._line.advance(self._offset_s + time_s)
+
+    def _reading(self, answer: Answer) -> Reading:
+        bench, steps = self._bench, self._hello.adc_samples * ADC_STEPS / self._bench.supply_V
+        status = Status(answer.flags)
+        if answer.boot != self._boot:
+            status |= Status.REBOOTED
+            self._rebooted = True
+        if not status & Status.ARMED:
+            self._armed = False
+        if answer.micros < self._micros:
+            self._turns += 1
+        self._micros = answer.micros
+        self._tally.device(answer.crc_errors, answer.dropped)
+        return Reading(
+            math.nan if bench.monitor is None else bench.monitor.of(answer.monitor / steps),
+            answer.flex / steps,
+            -1 if answer.code == UNKNOWN_CODE else answer.code,
+            (answer.micros + self._turns * WHOLE_CLOCK) / 1e6,
+            status,
+            answer.monitor / steps,
+            answer.monitor / steps,
+        )
+
+    def _check_open(self) -> None:
+        if self._closed:
+            raise BenchError("the bench is closed", file=self._line.name)
+
+
+def open_serial(port: str, bench: Bench) -> SerialBench:
+    """The bench on a serial port, as `/dev/ttyUSB0` or `COM3`. BenchError where there is none, it is in use, or nothing answers."""
+    return SerialBench(SerialTransport(port), bench)
