@@ -241,7 +241,6 @@ class SerialBench:
             (answer.micros + self._turns * WHOLE_CLOCK) / 1e6,
             status,
             answer.monitor / steps,
-            answer.monitor / steps,
         )
 
     def _check_open(self) -> None:
