@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 )
 @click.option("--name", metavar="TEXT", help="Of the bench. [default: the name of --out]")
 @click.option(
-    "--supply-v",
     "--supply-V",
     "supply_V",
     type=Finite("V"),
@@ -51,14 +50,12 @@ if TYPE_CHECKING:
     help="Levels on the way up; the same are read on the way down.",
 )
 @click.option(
-    "--max-mpa",
     "--max-MPa",
     "max_MPa",
     type=Finite("MPA"),
     help="Highest level, by the nominal regulator. [default: what a bench without a calibration is given]",
 )
 @click.option(
-    "--limit-mpa",
     "--limit-MPa",
     "limit_MPa",
     type=Finite("MPA"),
@@ -76,7 +73,7 @@ def calibrate(bench: str | None, gauge: str, out: Path, overwrite: bool, as_json
     type what the gauge shows. Written is a bench file for `--calibration`, with all readings in it.
 
     The bench is held at a level for as long as you take, and vented at the end, on Ctrl-C and on every error. Nothing goes up to a
-    level where the readings so far foresee more than --limit-mpa.
+    level where the readings so far foresee more than --limit-MPa.
 
     Refused are readings that pressure should not rest on: too few or too close levels, pressure that falls with the volts, R² below
     0.995, and a reading unlike the others, by its number.
@@ -84,7 +81,7 @@ def calibrate(bench: str | None, gauge: str, out: Path, overwrite: bool, as_json
     \b
     Examples:
       benchlab bench calibrate --bench serial:/dev/ttyUSB0 --gauge "WIKA CPG1500, 0-10 bar, 0.1 %" --unit kPa
-      benchlab bench calibrate --readings gauge.csv --gauge "Keller LEO 2" --supply-v 4.93 --date 2026-05-31
+      benchlab bench calibrate --readings gauge.csv --gauge "Keller LEO 2" --supply-V 4.93 --date 2026-05-31
       benchlab bench calibrate --bench twin --gauge twin --out twin.yaml
     """
     import datetime
@@ -128,13 +125,13 @@ def _check(bench: str | None, gauge: str, options: dict[str, Any]) -> None:
             "--gauge is empty", hint="say which gauge, so that a reviewer knows what the pressures rest on"
         )
     if options["readings"] is not None and options["supply_V"] is None:
-        raise UsageError("--readings needs --supply-v", hint="volts become codes by it")
+        raise UsageError("--readings needs --supply-V", hint="volts become codes by it")
     if options["supply_V"] is not None and not 4.5 <= options["supply_V"] <= 5.5:
-        raise UsageError(f"--supply-v is {options['supply_V']:g}", hint="give 4.5 to 5.5, as measured")
+        raise UsageError(f"--supply-V is {options['supply_V']:g}", hint="give 4.5 to 5.5, as measured")
     if (unit := options["unit"]) is not None and (known_unit(unit) or ("", ""))[0] != "pressure":
         raise UsageError(f"--unit {unit!r} is not a unit of pressure", hint="give kPa, MPa, bar or psi")
     if not 0 < options["limit_MPa"] <= 1:
-        raise UsageError(f"--limit-mpa is {options['limit_MPa']:g}", hint="give more than 0 and at most 1 MPa")
+        raise UsageError(f"--limit-MPa is {options['limit_MPa']:g}", hint="give more than 0 and at most 1 MPa")
     if not 0.1 <= options["settle_s"] <= 600:
         raise UsageError(f"--settle-s is {options['settle_s']:g}", hint="give 0.1 to 600")
     if options["date"] is not None:

@@ -34,47 +34,26 @@ def measure(text: str, gauge: str, options: dict[str, Any]) -> tuple[list[GaugeR
     top = options["max_MPa"] or nominal.ceiling_MPa
     if not 0 < top <= nominal.ceiling_MPa:
         raise UsageError(
-            f"--max-mpa is {top:g}", hint=f"give at most {nominal.ceiling_MPa:.4g}, the most that a new bench is given"
+            f"--max-MPa is {top:g}", hint=f"give at most {nominal.ceiling_MPa:.4g}, the most that a new bench is given"
         )
+    levels, settle_s = levels_MPa(top, options["points"]), options["settle_s"]
     with closing(open_bench(text, nominal)) as device:
-        answers = Answers()
-        supply_V = options["supply_V"] or (nominal.supply_V if simulated else ask_volts(answers))
         if simulated:
+            supply_V = options["supply_V"] or nominal.supply_V
             with VirtualHold(device) as hold:
-                ask = twin_gauge(device)
-                readings = take_readings(
-                    hold,
-                    levels_MPa(top, options["points"]),
-                    supply_V,
-                    nominal.limit_MPa,
-                    ask,
-                    options["settle_s"],
-                    _say,
-                )
-        else:
-            unit = options["unit"] or ask_unit(answers)
-            with ThreadHold(device) as held:
-                answers.check = held.check
-                readings = take_readings(
-                    held,
-                    levels_MPa(top, options["points"]),
-                    supply_V,
-                    nominal.limit_MPa,
-                    lambda level: _ask_gauge(answers, level, unit),
-                    options["settle_s"],
-                    _say,
-                )
-            click.echo("vented", err=True)
+                readings = take_readings(hold, levels, nominal, supply_V, twin_gauge(device), settle_s, _say)
+            return readings, supply_V, f"{SIMULATED} gauge of the twin"
+        answers = Answers()
+        supply_V, unit = options["supply_V"] or ask_volts(answers), options["unit"] or ask_unit(answers)
+        with ThreadHold(device) as held:
+            answers.check = held.check
+            readings = take_readings(
+                held, levels, nominal, supply_V, lambda level: _ask_gauge(answers, level, unit), settle_s, _say
+            )
+        click.echo("vented", err=True)
         for fault in device.faults():
             _say(f"{fault.cause} ({fault.count})")
-    told = (
-        f"{SIMULATED} gauge of the twin"
-        if simulated
-        else f"{SIMULATED} bench ({kind}): {gauge}"
-        if kind != "serial"
-        else gauge
-    )
-    return readings, supply_V, told
+    return readings, supply_V, gauge if kind == "serial" else f"{SIMULATED} bench ({kind}): {gauge}"
 
 
 def _ask_gauge(answers: Answers, level: Level, unit: str) -> float:

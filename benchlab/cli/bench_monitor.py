@@ -28,7 +28,9 @@ TOLD_HZ = 5.0
 @bench_option(default=None)
 @calibration_option
 @click.option("--seconds", type=Finite("S"), help="End after this. [default: until Ctrl-C]")
-@click.option("--rate-hz", type=Finite("HZ"), default=20.0, show_default=True, help="Readings a second, 0.1 to 200.")
+@click.option(
+    "--rate-Hz", "rate_Hz", type=Finite("HZ"), default=20.0, show_default=True, help="Readings a second, 0.1 to 200."
+)
 @click.option("--out", type=click.Path(path_type=Path), metavar="FILE", help="CSV table of all readings to write.")
 @click.option("--overwrite", is_flag=True, help="Replace an existing table.")
 @click.option("--json-lines", is_flag=True, help="Each reading as a line of JSON on standard output.")
@@ -37,7 +39,7 @@ def monitor(
     bench: str,
     calibration: Path | None,
     seconds: float | None,
-    rate_hz: float,
+    rate_Hz: float,
     out: Path | None,
     overwrite: bool,
     json_lines: bool,
@@ -58,8 +60,8 @@ def monitor(
     from benchlab.workflows.bench_monitor import summary, watch, write_seen
     from benchlab.workflows.open_bench import bench_of, open_bench, spec_of
 
-    if not 0.1 <= rate_hz <= 200:
-        raise UsageError(f"--rate-hz is {rate_hz:g}", hint="give 0.1 to 200")
+    if not 0.1 <= rate_Hz <= 200:
+        raise UsageError(f"--rate-Hz is {rate_Hz:g}", hint="give 0.1 to 200")
     if seconds is not None and seconds <= 0:
         raise UsageError(f"--seconds is {seconds:g}", hint="give more than 0")
     if json_lines and as_json:
@@ -70,7 +72,7 @@ def monitor(
     kept: list[Seen] = []
     lost: BenchlabError | None = None
     with closing(open_bench(bench, calibrated)) as device:
-        shown = _shown(watch(device, calibrated, RealClock(), rate_hz, seconds), json_lines)
+        shown = _shown(watch(device, calibrated, RealClock(), rate_Hz, seconds), json_lines)
         try:
             for one in shown:
                 if out is not None or as_json:

@@ -13,7 +13,7 @@ from benchlab.control.straight_line import StraightLine, fit_straight_line
 from benchlab.errors import InputError
 from benchlab.units import FloatArray
 
-FEWEST_LEVELS, SMALLEST_SPAN_V = 4, 1.0
+FEWEST_LEVELS, SMALLEST_SPAN_V = 4, 0.8
 """A line is fitted to this many different volts at least, and over this many volts."""
 
 WORST_R_SQUARED = 0.995

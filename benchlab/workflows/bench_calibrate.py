@@ -22,6 +22,9 @@ from benchlab.io.files import check_new_file
 FEWEST_MONITOR = 4
 """Readings with monitor volts that its line is fitted to."""
 
+COVERED = 0.9
+"""Part of the limit that the readings should reach: what is above them is extrapolated, and told."""
+
 
 @dataclass(frozen=True)
 class CalibrationSettings:
@@ -71,6 +74,10 @@ def calibrate(readings: Sequence[GaugeReading], settings: CalibrationSettings, o
         calibrated=True,
     )
     warnings = [*regulator.warnings, *(watched.warnings if watched else ())]
+    if pressure.max() < COVERED * bench.limit_MPa:
+        warnings.append(
+            f"the readings end at {pressure.max():.3f} MPa: up to the limit of {bench.limit_MPa:g} MPa the line is extrapolated"
+        )
     if bench.flex is not None and old is not None:
         warnings.append(f"the flex sensor's line is kept from the calibration of {old.bench.date}")
     found = _summary(bench, regulator, watched, readings, warnings, out)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchlab.bench import DAC_CODES
+from benchlab.bench import DAC_CODES, Bench
 from benchlab.devices.interface import Device
 from benchlab.errors import BenchError
 from benchlab.io.bench_file import GaugeReading
@@ -44,13 +44,14 @@ def levels_MPa(top_MPa: float, points: int) -> list[float]:
 def take_readings(
     hold: Hold,
     levels: Sequence[float],
+    bench: Bench,
     supply_V: float,
-    limit_MPa: float,
     gauge: Gauge,
     settle_s: float,
     tell: Callable[[str], None],
 ) -> list[GaugeReading]:
-    """Stand at each level and ask for the gauge's reading. supply_V: as measured, which turns the DAC's codes into volts.
+    """Stand at each level and ask for the gauge's reading. bench: that the device was opened with. supply_V: as measured, which the DAC's
+    codes and the ADC's steps are parts of.
 
     A level above the last is left out, with all above it, where the readings so far foresee more than the limit there. Raises
     BenchError, after which the bench is vented, for a reading above the limit.
@@ -59,9 +60,11 @@ def take_readings(
     highest, stands_at = math.inf, 0.0
     for index, asked in enumerate(levels):
         rising = index == 0 or asked > levels[index - 1]
-        if asked >= highest or (rising and _too_high(readings, levels, index, limit_MPa)):
+        if asked >= highest or (rising and _too_high(readings, levels, index, bench.limit_MPa)):
             if highest == math.inf:
-                tell(f"not going up to {asked:.3f} MPa: the gauge's readings foresee more than {limit_MPa:g} MPa there")
+                tell(
+                    f"not going up to {asked:.3f} MPa: the gauge's readings foresee more than {bench.limit_MPa:g} MPa there"
+                )
             highest = min(highest, asked)
             continue
         if asked == stands_at:
@@ -71,12 +74,12 @@ def take_readings(
         if code < 0:
             raise BenchError("the bench does not say which code its DAC holds; vented", hint="flash the firmware again")
         volts = supply_V * code / DAC_CODES
-        monitor = _mean([r.monitor_V for r in recent])
+        monitor = _mean([r.monitor_V for r in recent]) * supply_V / bench.supply_V
         pressure = gauge(Level(index + 1, len(levels), asked, volts, monitor, rising))
         hold.check()
-        if pressure > limit_MPa:
+        if pressure > bench.limit_MPa:
             raise BenchError(
-                f"the gauge shows {pressure:.4g} MPa at {volts:.3f} V, above the limit of {limit_MPa:g} MPa; vented",
+                f"the gauge shows {pressure:.4g} MPa at {volts:.3f} V, above the limit of {bench.limit_MPa:g} MPa; vented",
                 hint="is it the unit? else give --max-MPa less, or find out what regulator this is",
             )
         readings.append(GaugeReading(volts, pressure, monitor, rising))

@@ -59,6 +59,9 @@ class SmallBench:
         self.code = code
         self.highest_code = max(self.highest_code, code)
         monitor_V = float("nan") if self.monitor is None else self.monitor.inverse(self.pressure_MPa)
+        monitor_V *= (
+            self.bench.supply_V / self.true_supply_V
+        )  # the ADC's reference is the supply that the host takes for another
         return Reading(float("nan"), 1.0, code, time_s, Status.ARMED if self.armed else Status(0), monitor_V)
 
     def vent(self) -> None:

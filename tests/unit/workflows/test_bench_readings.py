@@ -17,7 +17,7 @@ def read(device: SmallBench, supply_V: float = 4.9, points: int = 8, gauge=None)
     told: list[str] = []
     with VirtualHold(device) as hold:
         ask = gauge or (lambda level: device.pressure_MPa)
-        readings = take_readings(hold, levels_MPa(NEW.ceiling_MPa, points), supply_V, 0.35, ask, 0.1, told.append)
+        readings = take_readings(hold, levels_MPa(NEW.ceiling_MPa, points), NEW, supply_V, ask, 0.1, told.append)
     return readings, told
 
 
@@ -45,6 +45,14 @@ def test_a_wrong_supply_scales_the_volts_and_leaves_pressure_per_code(tmp_path) 
             calibrate(readings, CalibrationSettings("b", "g", supply_V, 0.35, "2026-05-31"), out)["ceiling_code"]
         )
     assert codes[0] == codes[1]
+
+
+def test_a_limit_far_above_the_readings_is_told(tmp_path) -> None:
+    readings, _ = read(SmallBench(NEW))
+    low = [r for r in readings if r.pressure_MPa < 0.25]
+    settings = CalibrationSettings("b", "g", 4.9, 0.35, "2026-05-31")
+    assert not calibrate(readings, settings, tmp_path / "whole.yaml")["warnings"]
+    assert "extrapolated" in calibrate(low, settings, tmp_path / "low.yaml")["warnings"][0]
 
 
 def test_a_stronger_regulator_is_not_driven_across_the_limit() -> None:
