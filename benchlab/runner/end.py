@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -73,6 +73,10 @@ class RunEnd:
             return None
         p50, p99 = np.percentile(self.late_s, (50, 99))
         return {"p50": 1e3 * p50, "p99": 1e3 * p99, "max": 1e3 * float(self.late_s.max())}
+
+    def with_trouble(self, words: str) -> RunEnd:
+        """The same with what could not be written, if nothing was known of that yet."""
+        return replace(self, trouble=self.trouble or words)
 
     def record(self) -> dict[str, Any]:
         """The stop record, in JSON's own types."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import bisect
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from benchlab.runner.end import Cause
 from benchlab.runner.guards.limits import Limits
@@ -14,6 +15,7 @@ from benchlab.runner.tick import Tick
 class BendGuard:
     """The angle against the least that this pressure must bend the actuator by. Without a response curve, 10° at 0.2 MPa are expected."""
 
+    name = "bending"
     WORTH_DEG = 10.0
     REST_MPa = 0.02
 
@@ -44,3 +46,21 @@ class BendGuard:
 def least_expected_deg(pressure_MPa: float) -> float:
     """The angle that any actuator of this kind reaches (the stiffest of the paper, slw 30: 7.8° at 0.35 MPa, a quarter is asked for)."""
     return pressure_MPa * BendGuard.WORTH_DEG / 0.2
+
+
+def expected_along(pressure_MPa: Sequence[float], angle_deg: Sequence[float]) -> Callable[[float], float]:
+    """The angle over the pressure by straight lines through the points of a response curve, (P,) growing pressures each with its angle.
+
+    >>> expected_along([0.0, 0.1, 0.3], [0.0, 40.0, 100.0])(0.2)
+    70.0
+    """
+    pressures, angles = list(map(float, pressure_MPa)), list(map(float, angle_deg))
+
+    def expected(pressure: float) -> float:
+        if not pressures[0] < pressure < pressures[-1]:
+            return angles[0] if pressure <= pressures[0] else angles[-1]
+        after = bisect.bisect_right(pressures, pressure)
+        share = (pressure - pressures[after - 1]) / (pressures[after] - pressures[after - 1])
+        return angles[after - 1] + share * (angles[after] - angles[after - 1])
+
+    return expected

@@ -16,6 +16,8 @@ from benchlab.runner.tick import Tick
 
 
 class Guard(typing.Protocol):
+    name: str
+
     def check(self, tick: Tick) -> Cause | None: ...
 
 

@@ -12,6 +12,7 @@ from benchlab.runner.tick import Tick
 class DeviceGuard:
     """What the device says of itself: it vented, it booted, its DAC is gone, it did not take a command, it is not armed."""
 
+    name = "device"
     WORDS: typing.ClassVar = {
         Status.SILENCE: ("silence", "the device vented because it heard nothing for longer than its silence limit"),
         Status.REBOOTED: (
@@ -43,19 +44,25 @@ def too_late(index: int, late_s: float, most_s: float) -> Cause:
 
 
 class FaultGuard:
-    """More faults in the last two seconds than a share of the ticks of two seconds."""
+    """More faults in the last two seconds than a share of the ticks of two seconds.
 
+    Looked at when an answer came: a line that stays silent is the device's to call lost.
+    """
+
+    name = "faults"
     OVER_S = 2.0
 
     def __init__(self, share: float, rate_Hz: float) -> None:
-        self.share, self.most = share, max(5.0, share * rate_Hz * self.OVER_S)
+        self.most = max(5.0, share * rate_Hz * self.OVER_S)
         self.recent: list[tuple[float, int]] = []
 
     def check(self, tick: Tick) -> Cause | None:
         if tick.faults:
             self.recent = [(t, n) for t, n in self.recent if t > tick.time_s - self.OVER_S]
             self.recent.append((tick.time_s, tick.faults))
-            if (total := sum(n for _, n in self.recent)) > self.most:
-                words = f"{total} faults on the line in {self.OVER_S:g} s, more than {self.most:g}"
-                return Cause("faults", f"{words}: look at cable, plug and noise; the journal has each with its cause")
-        return None
+        if not self.recent or tick.status & Status.NO_ANSWER.value:
+            return None
+        if (total := sum(n for t, n in self.recent if t > tick.time_s - self.OVER_S)) <= self.most:
+            return None
+        words = f"{total} faults on the line in {self.OVER_S:g} s, more than {self.most:g}"
+        return Cause("faults", f"{words}: look at cable, plug and noise; the journal has each with its cause")

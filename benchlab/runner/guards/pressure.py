@@ -11,6 +11,8 @@ from benchlab.runner.tick import Tick
 class AboveGuard:
     """The measured pressure is above what the bench may have, whatever was asked for."""
 
+    name = "pressure above the limit"
+
     def __init__(self, limit_MPa: float, above_MPa: float, for_s: float) -> None:
         self.limit_MPa, self.above_MPa, self.for_s = limit_MPa, above_MPa, for_s
         self.timer = Timer()
@@ -26,6 +28,7 @@ class AboveGuard:
 class FollowGuard:
     """The measured pressure against the range that regulators reach, from one without lag to one with lag_s."""
 
+    name = "pressure follows"
     FAR, SOON = 5.0, 0.25
 
     def __init__(self, limits: Limits) -> None:
