@@ -18,16 +18,16 @@ class SensorGuard:
     def __init__(
         self, name: str, unit: str, value: Callable[[Tick], float], low: float, high: float, limits: Limits
     ) -> None:
-        self.name, self.unit, self.value, self.low, self.high, self.limits = name, unit, value, low, high, limits
+        self.name, self.unit, self.value, self.scale, self.limits = name, unit, value, (low, high), limits
         self.bad = Timer()
-        self.same = self.same_since = math.nan
-        self.asked = (math.inf, -math.inf)
+        self.same = self.same_since = self.low = self.high = math.nan
+        self.moved_at = math.inf
 
     def check(self, tick: Tick) -> Cause | None:
         if tick.status & Status.NO_ANSWER.value:
             return None
         value = self.value(tick)
-        good = self.low <= value <= self.high
+        good = self.scale[0] <= value <= self.scale[1]
         if self.bad.count(tick.time_s, not good) >= self.limits.sensor_s:
             return Cause("sensor", f"{self._fault(value)} for {self.bad.for_s:.2g} s: look at the sensor and its wires")
         return self._stuck(tick, value)
@@ -35,18 +35,22 @@ class SensorGuard:
     def _fault(self, value: float) -> str:
         if not math.isfinite(value):
             return f"the {self.name} gives no number"
-        return f"the {self.name} reads {value:.4g} {self.unit}, outside {self.low:.4g} to {self.high:.4g} {self.unit},"
+        return f"the {self.name} reads {value:.4g} {self.unit}, outside {self.scale[0]:.4g} to {self.scale[1]:.4g} {self.unit},"
 
     def _stuck(self, tick: Tick, value: float) -> Cause | None:
+        """The pressure asked for has gone by stuck_MPa since the value was new, and stuck_s have passed since it had."""
+        command, limits = tick.command_MPa, self.limits
         if value != self.same:
-            self.same, self.same_since, self.asked = value, tick.time_s, (tick.command_MPa, tick.command_MPa)
+            self.same, self.same_since = value, tick.time_s
+            self.low = self.high = command
+            self.moved_at = math.inf
             return None
-        low, high = self.asked
-        if not low <= tick.command_MPa <= high:
-            low, high = min(low, tick.command_MPa), max(high, tick.command_MPa)
-            self.asked = low, high
-        stuck_s = tick.time_s - self.same_since
-        if high - low < self.limits.stuck_MPa or stuck_s < self.limits.stuck_s:
+        self.low, self.high = min(self.low, command), max(self.high, command)
+        if self.high - self.low < limits.stuck_MPa:
             return None
-        words = f"the {self.name} reads exactly {value:.4g} {self.unit} for {stuck_s:.2g} s while the pressure asked for went by"
-        return Cause("sensor", f"{words} {1e3 * (high - low):.0f} kPa: stuck, or not connected")
+        self.moved_at = min(self.moved_at, tick.time_s)
+        if tick.time_s - self.moved_at < limits.stuck_s:
+            return None
+        words = f"the {self.name} reads exactly {value:.4g} {self.unit} for {tick.time_s - self.same_since:.2g} s"
+        moved = f"while the pressure asked for went by {1e3 * (self.high - self.low):.0f} kPa"
+        return Cause("sensor", f"{words} {moved}: stuck, or not connected")

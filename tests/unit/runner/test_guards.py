@@ -185,6 +185,16 @@ def test_a_sensor_without_noise_at_rest_is_not_stuck() -> None:
     assert run(setting("pressure_MPa", lambda n, p: round(p, 3))).reason == "completed"
 
 
+def test_a_sensor_that_answers_late_after_a_long_hold_is_not_stuck() -> None:
+    quantized = lagging(0.1)
+
+    def change(n: int, fields: Fields) -> None:
+        quantized(n, fields)
+        fields["pressure_MPa"], fields["flex_V"] = round(fields["pressure_MPa"], 3), round(fields["flex_V"], 2)
+
+    assert run(change, np.repeat([0.0, 0.3, 0.0, 0.3], 500)).reason == "completed"
+
+
 FLAGS = [
     (Status.ARMED | Status.SILENCE, "silence"),
     (Status.REBOOTED | Status.WATCHDOG, "rebooted"),
