@@ -23,6 +23,11 @@ def test_the_inverse_of_a_known_curve() -> None:
     assert np.all(np.diff(found) > 0) and inverse.clamped == 0
 
 
+def test_a_curve_that_begins_above_nothing_gets_its_first_point() -> None:
+    inverse = InverseCurve([0.1, 0.2, 0.3], [40.0, 80.0, 120.0])
+    assert [inverse(angle) for angle in (0.0, 20.0, 100.0)] == pytest.approx([0.0, 0.05, 0.25]) and inverse.clamped == 0
+
+
 def test_beyond_the_curve_it_gives_its_ends_and_counts() -> None:
     inverse = InverseCurve(PRESSURE, ANGLE, ceiling_MPa=0.2)
     assert inverse(-5.0) == 0 and inverse(500.0) == pytest.approx(0.2) and inverse.clamped == 2

@@ -90,6 +90,13 @@ def test_hysteresis_is_stated() -> None:
     assert found.hysteresis_max_deg == pytest.approx(3.0, abs=0.6)
 
 
+def test_a_sensor_that_is_slow_after_each_step_has_the_same_line() -> None:
+    t, command, volts, angle = run(np.random.default_rng(2), noise_V=0.0)
+    slow = lfilter([0.05], [1, -0.95], volts - 3.0) + 3.0  # 0.2 s
+    found = calibrate_flex(t, command, slow, t, angle)
+    assert found.line.gain.value == pytest.approx(GAIN, rel=2e-3) and found.line.sd < 0.1
+
+
 def test_missing_volts_and_angles_are_passed_over_and_too_few_refused() -> None:
     t, command, volts, angle = run(np.random.default_rng(1))
     holes = np.where(np.arange(len(t)) % 5 == 0, np.nan, volts)

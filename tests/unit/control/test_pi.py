@@ -85,7 +85,8 @@ def test_no_angle_for_a_moment_keeps_the_pressure_and_for_longer_ends_the_run() 
         before = pi.pressure_MPa(10.0, 10.0, 0.0, 0.01)
     assert [pi.pressure_MPa(10.0, 10.0, math.nan, 0.01) for _ in range(5)] == [before] * 5
     # Back again: the time without an angle is not integrated, the last step is.
-    assert pi.pressure_MPa(10.0, 10.0, 0.0, 0.01) == pytest.approx(before + 1e-2 * 0.01 * 10, rel=1e-12)
+    back = before + 1e-3 * (20 - 10) + 1e-2 * 0.01 * 20
+    assert pi.pressure_MPa(20.0, 20.0, 0.0, 0.01) == pytest.approx(back, rel=1e-12)
     for _ in range(5):
         pi.pressure_MPa(10.0, 10.0, math.nan, 0.01)
     with pytest.raises(BenchError, match=r"no bending angle measured for 0\.06 s; 0\.05 s are allowed"):

@@ -29,6 +29,10 @@ def test_a_late_sine() -> None:
     assert found.lag_s == pytest.approx(0.15, abs=1e-3) and found.bias_deg == pytest.approx(0, abs=1e-9)
 
 
+def test_the_lag_is_found_between_samples() -> None:
+    assert lag_s(T, SINE, 60 + 45 * np.sin(W * (T - 0.1537))) == pytest.approx(0.1537, abs=5e-4)
+
+
 def test_the_papers_figures_belong_together() -> None:
     """R² 0.96 with RMSE 6.72° is a sine of 47.5° amplitude by this definition of R²."""
     amplitude = 6.72 * math.sqrt(2 / 0.04)
