@@ -11,6 +11,7 @@ import click
 
 import benchlab
 from benchlab.cli.analyze import analyze
+from benchlab.cli.bench import bench
 from benchlab.cli.calibrate import calibrate
 from benchlab.cli.cut import cut
 from benchlab.cli.design import design
@@ -63,11 +64,12 @@ def cli(debug: bool) -> None:
 
     \b
     Exit codes: 0 ok, 1 a bug in benchlab, 2 usage, 3 input refused, 4 a batch finished with failures,
-    130 interrupted (what was measured is kept, marked partial).
+    5 the bench stopped or was stopped, 130 interrupted (what was measured is kept, marked partial).
     """
 
 
 cli.add_command(analyze)
+cli.add_command(bench)
 cli.add_command(calibrate)
 cli.add_command(cut)
 cli.add_command(design)
