@@ -111,20 +111,7 @@ def _replay(path: Path) -> Device:
 
 
 def _recorded_bench(path: Path) -> Bench:
-    from benchlab.bench import Line
     from benchlab.io.journal import read_journal
+    from benchlab.io.recorded_bench import recorded_bench
 
-    told = read_journal(path).header.get("bench")
-    if not isinstance(told, dict):
-        raise InputError("its header does not say what bench it ran on", file=path, hint="give --calibration")
-    lines = {
-        name: Line(**{k: float("nan") if v is None else v for k, v in told[name].items()})
-        for name in ("regulator", "monitor", "flex")
-        if told.get(name) is not None
-    }
-    try:
-        return Bench(
-            **{**told, **{name: lines.get(name) for name in ("monitor", "flex")}, "regulator": lines["regulator"]}
-        )
-    except (TypeError, KeyError) as error:
-        raise InputError(f"its header's bench is not one: {error}", file=path, hint="give --calibration") from error
+    return recorded_bench(read_journal(path).header, path)

@@ -1,0 +1,110 @@
+"""What is seen of a run while it goes on: two lines on a terminal, a plain line now and then elsewhere. All on standard error.
+
+Drawn from a thread of its own, ten times a second at most, so that a terminal that is slow, stopped or gone holds up nothing.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import Any
+
+from benchlab.cli.progress import PLAIN_EVERY_S, fancy
+from benchlab.errors import printable
+from benchlab.protocol.plan import Plan
+from benchlab.runner.stop import Stop
+from benchlab.runner.tick import Tick
+
+DRAW_EVERY_S = 0.1
+
+
+class Screen:
+    """Takes ticks from the loop, which costs it an assignment, and puts the last one into words."""
+
+    def __init__(self, plan: Plan, stop: Stop, keys: bool) -> None:
+        self.plan, self.stop, self.keys = plan, stop, keys
+        self.tick: Tick | None = None
+        self.most_late_s = 0.0
+
+    def on_tick(self, tick: Tick) -> None:
+        self.tick = tick
+        self.most_late_s = max(self.most_late_s, tick.late_s)
+
+    def place(self, tick: Tick) -> str:
+        """Where in the plan: `3.2 of 10.0 s, ramp to 0.35 MPa`."""
+        plan = self.plan
+        step = plan.steps[int(plan.step[tick.index])]
+        return f"{plan.time_s[tick.index]:.1f} of {plan.duration_s:.1f} s, {printable(step.label)}"
+
+    def values(self, tick: Tick) -> str:
+        """`set 0.210 MPa, measured 0.208 MPa, 62.4°, at most 0.9 ms late`."""
+        measured, angle, reference = tick.reading.pressure_MPa, tick.angle_deg, tick.reference_deg
+        parts = [f"set {tick.command_MPa:.3f} MPa"]
+        parts += [f"measured {measured:.3f} MPa"] if math.isfinite(measured) else []
+        wanted = f" of {reference:.1f}°" if math.isfinite(reference) else ""
+        parts += [f"{angle:.1f}°{wanted}"] if math.isfinite(angle) else []
+        parts += [f"at most {1e3 * self.most_late_s:.1f} ms late"]
+        return ", ".join(parts)
+
+    def hint(self) -> str:
+        if self.stop.cause is not None:
+            return "stopping"
+        if self.stop.paused:
+            return "PAUSED, holding: p goes on, q stops"
+        return "p pauses, q stops" if self.keys else "Ctrl-C stops"
+
+
+@contextmanager
+def shown(screen: Screen, title: str, quiet: bool) -> Iterator[None]:
+    """Draw the screen while the block runs."""
+    if quiet:
+        yield
+        return
+    over = threading.Event()
+    draw = _draw_lines if fancy() else _print_now_and_then
+    thread = threading.Thread(target=draw, args=(screen, printable(title), over), daemon=True, name="benchlab screen")
+    thread.start()
+    try:
+        yield
+    finally:
+        over.set()
+        thread.join(2.0)
+
+
+def _draw_lines(screen: Screen, title: str, over: threading.Event) -> None:
+    from rich.console import Console
+    from rich.live import Live
+
+    with suppress(OSError), Live(console=Console(stderr=True), auto_refresh=False, transient=True) as live:
+        while not over.wait(DRAW_EVERY_S):
+            if screen.tick is not None:
+                live.update(_lines(screen, screen.tick, title), refresh=True)
+
+
+def _lines(screen: Screen, tick: Tick, title: str) -> Any:
+    from rich.console import Group
+    from rich.progress_bar import ProgressBar
+    from rich.table import Table
+    from rich.text import Text
+
+    first = Table.grid(padding=(0, 1), expand=True)
+    first.add_column(no_wrap=True)
+    first.add_column(ratio=1, min_width=10)
+    first.add_column(no_wrap=True, overflow="ellipsis")
+    bar = ProgressBar(total=max(1, len(screen.plan.time_s) - 1), completed=tick.index)
+    first.add_row(Text(title, "bold"), bar, Text(screen.place(tick)))
+    hint = Text(f"   {screen.hint()}", "bold yellow" if screen.stop.paused else "dim")
+    second = Text.assemble(screen.values(tick), hint, no_wrap=True, overflow="ellipsis")
+    return Group(first, second)
+
+
+def _print_now_and_then(screen: Screen, title: str, over: threading.Event) -> None:
+    with suppress(OSError):
+        while not over.wait(PLAIN_EVERY_S):
+            if screen.tick is not None:
+                print(
+                    f"{title}: {screen.place(screen.tick)}: {screen.values(screen.tick)}", file=sys.stderr, flush=True
+                )

@@ -1,0 +1,98 @@
+"""`benchlab run`: a protocol on a bench, from its journal to its files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from benchlab.devices.interface import Device
+from benchlab.errors import InputError
+from benchlab.io.files import reason_of
+from benchlab.io.journal import JournalWriter
+from benchlab.runner.clock import Clock, RealClock, VirtualClock
+from benchlab.runner.end import RunEnd
+from benchlab.runner.guards.choice import guards_of
+from benchlab.runner.run import execute
+from benchlab.runner.stop import Stop, signals_to
+from benchlab.runner.tick import Tick
+from benchlab.runner.undisturbed import undisturbed
+from benchlab.workflows.open_bench import open_bench
+from benchlab.workflows.run_header import header_of
+from benchlab.workflows.run_prepare import Prepared
+
+
+@dataclass(frozen=True)
+class Driven:
+    """A run that is over: its end, its journal, and the twin's truth if it ran on one."""
+
+    end: RunEnd
+    journal: Path
+    about: dict[str, Any]
+    truth: Any = None
+
+
+def drive(prepared: Prepared, stop: Stop, on_tick: Callable[[Tick], None] | None = None) -> Driven:
+    """Open the bench, begin the journal, execute the plan, vent, let go. Signals go to `stop` meanwhile.
+
+    Whatever happens after the bench has answered is told by the end of what is returned. Raises BenchError where the bench cannot be
+    opened, and UsageError or InputError where the journal cannot be begun; then nothing was armed and no file is left.
+    """
+    path = prepared.path(".journal")
+    with signals_to(stop):
+        device = open_prepared(prepared)
+        try:
+            _make_folder(path.parent)
+            about = device.about()
+            journal = JournalWriter(path, header_of(prepared, about))
+            try:
+                end = _executed(prepared, device, journal, stop, on_tick)
+            finally:
+                trouble = _closed(journal)
+        finally:
+            device.close()
+    return Driven(end.with_trouble(trouble), path, about, getattr(device, "truth", None))
+
+
+def open_prepared(prepared: Prepared) -> Device:
+    """The bench of a prepared run, open and disarmed."""
+    curve = prepared.curve if prepared.spec.kind == "twin" else None
+    return open_bench(str(prepared.spec), prepared.bench, fast=prepared.fast, seed=prepared.settings.seed, curve=curve)
+
+
+def _executed(
+    prepared: Prepared, device: Device, journal: JournalWriter, stop: Stop, on_tick: Callable[[Tick], None] | None
+) -> RunEnd:
+    clock: Clock = VirtualClock() if prepared.fast else RealClock()
+    guards = guards_of(prepared.bench, prepared.plan.rate_Hz, prepared.limits, prepared.expected_deg)
+    with undisturbed():
+        return execute(
+            prepared.plan,
+            device,
+            prepared.bench,
+            journal,
+            clock,
+            prepared.controller,
+            guards,
+            on_tick,
+            stop,
+            prepared.limits,
+            prepared.settings.pause_limit_s,
+        )
+
+
+def _make_folder(folder: Path) -> None:
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        raise InputError(f"could not be made: {reason_of(error)}", file=folder, hint="choose another --out") from error
+
+
+def _closed(journal: JournalWriter) -> str:
+    """Close the journal; what went wrong with it, in words."""
+    try:
+        journal.close()
+    except (InputError, OSError) as error:
+        return str(error)
+    return ""

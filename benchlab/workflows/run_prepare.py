@@ -1,0 +1,230 @@
+"""All of a run that can be refused without a bench: protocol, limits, control, guards, names and room on disk."""
+
+from __future__ import annotations
+
+import glob
+import hashlib
+import math
+import os
+import shutil
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from datetime import datetime
+from pathlib import Path
+
+import numpy as np
+
+from benchlab.actuator import ShellDesign
+from benchlab.bench import Bench
+from benchlab.control.controller import Controller, controller_of
+from benchlab.errors import InputError, UsageError
+from benchlab.protocol.plan import Control, Plan
+from benchlab.runner.guards.bend import expected_along, least_expected_deg
+from benchlab.runner.guards.limits import Limits
+from benchlab.units import FloatArray
+from benchlab.workflows.open_bench import Spec, bench_of, spec_of
+
+REAL_RATES_HZ = (10.0, 500.0)
+"""Of a real or emulated bench: slower and its silence limit vents it, faster and the line cannot answer."""
+
+BYTES_A_TICK, ROOM_BYTES = 600, 20_000_000
+"""Of journal and results together, as an upper bound; and what is kept free beside them."""
+
+LONGEST_NAME = 200
+
+Curve = tuple[FloatArray, FloatArray]
+
+
+@dataclass(frozen=True)
+class RunSettings:
+    """What the options of `benchlab run` say. guards: words as `follow_MPa=0.02`. name: of the files; None is protocol and date."""
+
+    bench: str = "twin"
+    calibration: Path | None = None
+    design: ShellDesign | None = None
+    curve: Path | None = None
+    control: Path | None = None
+    out: Path = Path()
+    name: str | None = None
+    rate_Hz: float | None = None
+    fast: bool = False
+    video: bool = False
+    seed: int | None = None
+    max_duration_s: float = 3600.0
+    pause_limit_s: float = 10.0
+    guards: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A run that may begin. text, sha256: of the protocol. control, controller: None in open loop. curve: pressure (MPa), angle (deg)."""
+
+    settings: RunSettings
+    spec: Spec
+    bench: Bench
+    plan: Plan
+    text: str
+    sha256: str
+    source: str
+    limits: Limits
+    curve: Curve | None
+    control: Control | None
+    controller: Controller | None
+    stem: Path
+    warnings: tuple[str, ...]
+
+    @property
+    def fast(self) -> bool:
+        """Whether time is virtual, as it always is for a replay."""
+        return self.settings.fast or self.spec.kind == "replay"
+
+    @property
+    def expected_deg(self) -> Callable[[float], float]:
+        """The angle that a pressure should give, by the response curve, or the least that any actuator gives."""
+        return least_expected_deg if self.curve is None else expected_along(*self.curve)
+
+    @property
+    def suffixes(self) -> tuple[str, ...]:
+        """Of the files that will be written."""
+        return (".journal", ".h5", ".csv", ".png", *((".mp4",) if self.settings.video else ()))
+
+    def path(self, suffix: str) -> Path:
+        return self.stem.with_name(self.stem.name + suffix)
+
+
+def prepare(protocol: str, settings: RunSettings) -> Prepared:
+    """Read and check everything; no port is opened and nothing is written.
+
+    Raises UsageError, InputError and LimitError, each saying what to change.
+    """
+    from benchlab.protocol.checks import check_limits
+
+    spec = _checked_spec(settings)
+    limits = Limits.of(settings.guards)
+    bench = bench_of(spec, settings.calibration)
+    plan, text, source = read_plan(protocol, settings)
+    check_limits(plan, bench)
+    _check_rate(plan, spec)
+    curve = _curve(settings)
+    control, warnings = _control(plan, bench, settings)
+    controller = None
+    if control is not None:
+        top_MPa = min(plan.limit_MPa, bench.ceiling_MPa)
+        controller = controller_of(**asdict(control), ceiling_MPa=top_MPa, curve=curve)
+    stem = _stem(source, settings)
+    check_room(stem, plan)
+    return Prepared(
+        settings=settings,
+        spec=spec,
+        bench=bench,
+        plan=plan,
+        text=text,
+        sha256=hashlib.sha256(text.encode()).hexdigest(),
+        source=source,
+        limits=limits,
+        curve=curve,
+        control=control,
+        controller=controller,
+        stem=stem,
+        warnings=tuple(warnings),
+    )
+
+
+def check_room(stem: Path, plan: Plan) -> None:
+    """The folder, or the one that it will be made in, may be written and has room; nothing has the name of our files.
+
+    Raises UsageError and, for a full disk, InputError.
+    """
+    folder = stem.parent
+    if folder.exists() and not folder.is_dir():
+        raise UsageError("is no folder", file=folder, hint="choose another --out")
+    there = folder if folder.is_dir() else folder.absolute().parent
+    if not there.is_dir():
+        raise UsageError("no such folder", file=folder.parent, hint="make it, or choose another --out")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise UsageError("the output folder is read-only", file=there, hint="choose another --out")
+    for path in sorted(there.glob(f"{glob.escape(stem.name)}.*")) if there is folder else []:
+        raise UsageError(
+            "exists, and measured data is never replaced", file=path, hint="choose another --name or --out"
+        )
+    free, need = shutil.disk_usage(there).free, BYTES_A_TICK * len(plan.time_s) + ROOM_BYTES
+    if free < need:
+        what = f"disk full: {free / 1e6:.0f} MB free, {need / 1e6:.0f} MB are kept for a run of this length"
+        raise InputError(what, file=there, hint="free some space, or choose another --out")
+
+
+def read_plan(protocol: str, settings: RunSettings) -> tuple[Plan, str, str]:
+    """The plan, the text of the protocol and its name. protocol: a path, or the name of a shipped one."""
+    from benchlab.io.protocol_file import protocol_text, read_protocol
+
+    plan = read_protocol(protocol, settings.max_duration_s, settings.rate_Hz)
+    return plan, protocol_text(protocol), Path(protocol).stem
+
+
+def _checked_spec(settings: RunSettings) -> Spec:
+    spec = spec_of(settings.bench)
+    if settings.fast and spec.kind == "serial":
+        raise UsageError("--fast is virtual time, which a real bench does not have", hint="leave --fast out")
+    if spec.kind != "twin":
+        for option in ("video", "seed"):
+            if getattr(settings, option) not in (None, False):
+                raise UsageError(f"--{option} is for a twin, and the bench is {spec}", hint=f"leave --{option} out")
+    if settings.design is not None and settings.curve is not None:
+        raise UsageError("--design and --curve both give a response curve", hint="give one of them")
+    if not 0 < settings.pause_limit_s <= 600:
+        raise UsageError(f"--pause-limit-s is {settings.pause_limit_s:g}", hint="give more than 0 and at most 600")
+    return spec
+
+
+def _check_rate(plan: Plan, spec: Spec) -> None:
+    low, high = REAL_RATES_HZ
+    if spec.kind in ("serial", "emulated") and not low <= plan.rate_Hz <= high:
+        raise InputError(
+            f"the plan's rate is {plan.rate_Hz:g} Hz, and {spec} takes {low:g} to {high:g} Hz", hint="give --rate-Hz"
+        )
+
+
+def _curve(settings: RunSettings) -> Curve | None:
+    """The response curve that --curve or --design says, to 0.35 MPa."""
+    if settings.curve is not None:
+        from benchlab.io.response_file import read_response_curves
+
+        curves = read_response_curves(settings.curve)
+        known = np.isfinite(curves.angle_deg)
+        return curves.pressure_MPa[known], curves.angle_deg[known]
+    if settings.design is not None:
+        from benchlab.workflows.run_curve import simulated_curve
+
+        return simulated_curve(settings.design)
+    return None
+
+
+def _control(plan: Plan, bench: Bench, settings: RunSettings) -> tuple[Control | None, list[str]]:
+    """Gains for the closed-loop steps, from --control or the protocol, and what is doubtful about them."""
+    if not plan.closed_loop:
+        unused = ["--control is not used: no step is closed-loop"] if settings.control is not None else []
+        return None, unused
+    if bench.flex is None:
+        raise InputError(
+            "the protocol controls the angle, and the flex sensor of this bench is not calibrated",
+            hint="calibrate it with `benchlab control flex`",
+        )
+    if settings.control is None:
+        if plan.control is None:
+            raise InputError("the protocol has no gains for its closed-loop steps", hint="give --control FILE")
+        return plan.control, []
+    from benchlab.io.control_file import read_control
+
+    told = read_control(settings.control)
+    control = Control(told.kp_MPa_per_deg, told.ki_MPa_per_deg_s, told.feed_forward, told.lead_s)
+    if math.isclose(told.rate_Hz, plan.rate_Hz):
+        return control, []
+    return control, [f"the gains are for {told.rate_Hz:g} Hz, and the plan runs at {plan.rate_Hz:g} Hz"]
+
+
+def _stem(source: str, settings: RunSettings) -> Path:
+    name = settings.name or f"{source}-{datetime.now():%Y%m%d-%H%M%S}"
+    if name != Path(name).name or name.startswith(".") or not name.isprintable() or len(name.encode()) > LONGEST_NAME:
+        hint = f"give --name without folders, up to {LONGEST_NAME} bytes, and --out for the folder"
+        raise UsageError(f"{name[:60]!r} is no name for files", hint=hint)
+    return settings.out / name

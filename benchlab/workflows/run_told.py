@@ -1,0 +1,44 @@
+"""What a run would do, in JSON's own types, without a bench."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from benchlab.io.nexus import plain
+from benchlab.runner.guards.choice import guards_of
+from benchlab.workflows.run_prepare import Prepared
+
+
+def planned(prepared: Prepared) -> dict[str, Any]:
+    """Plan, bench, guards, control, warnings and the files that would be written."""
+    plan, bench = prepared.plan, prepared.bench
+    guards = guards_of(bench, plan.rate_Hz, prepared.limits, prepared.expected_deg)
+    known = plan.pressure_MPa[np.isfinite(plan.pressure_MPa)]
+    slew = np.abs(np.diff(plan.pressure_MPa)) * plan.rate_Hz
+    found: dict[str, Any] = {
+        "dry_run": True,
+        "protocol": prepared.source,
+        "sha256": prepared.sha256,
+        "plan": {
+            "title": plan.title,
+            "rate_Hz": plan.rate_Hz,
+            "ticks": len(plan.time_s),
+            "duration_s": plan.duration_s,
+            "steps": len(plan.steps),
+            "limit_MPa": plan.limit_MPa,
+            "peak_MPa": known.max() if len(known) else None,
+            "slew_MPa_per_s": np.nanmax(slew) if np.isfinite(slew).any() else None,
+            "closed_loop": plan.closed_loop,
+        },
+        "bench_spec": str(prepared.spec),
+        "bench": {**asdict(bench), "ceiling_MPa": bench.ceiling_MPa, "ceiling_V": bench.volts(bench.ceiling_code)},
+        "guards": [guard.name for guard in guards],
+        "limits": asdict(prepared.limits),
+        "control": None if prepared.control is None else asdict(prepared.control),
+        "warnings": list(prepared.warnings),
+        "would_write": [str(prepared.path(suffix)) for suffix in prepared.suffixes],
+    }
+    return {name: plain(value) for name, value in found.items()}
