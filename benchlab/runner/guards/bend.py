@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import bisect
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike
 
 from benchlab.runner.end import Cause
 from benchlab.runner.guards.limits import Limits
@@ -48,13 +51,13 @@ def least_expected_deg(pressure_MPa: float) -> float:
     return pressure_MPa * BendGuard.WORTH_DEG / 0.2
 
 
-def expected_along(pressure_MPa: Sequence[float], angle_deg: Sequence[float]) -> Callable[[float], float]:
+def expected_along(pressure_MPa: ArrayLike, angle_deg: ArrayLike) -> Callable[[float], float]:
     """The angle over the pressure by straight lines through the points of a response curve, (P,) growing pressures each with its angle.
 
     >>> expected_along([0.0, 0.1, 0.3], [0.0, 40.0, 100.0])(0.2)
     70.0
     """
-    pressures, angles = list(map(float, pressure_MPa)), list(map(float, angle_deg))
+    pressures, angles = np.asarray(pressure_MPa, float).tolist(), np.asarray(angle_deg, float).tolist()
 
     def expected(pressure: float) -> float:
         if not pressures[0] < pressure < pressures[-1]:
