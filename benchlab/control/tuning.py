@@ -17,6 +17,10 @@ MAX_SENSITIVITY = 1.6
 """Ms that gains must keep at every operating point; SIMC with a closed-loop time of one dead time has 1.59."""
 
 
+LOOP_PERIODS = 1.5
+"""Dead time of the loop itself, in its periods: half of one for holding the pressure, one from measuring to asking."""
+
+
 @dataclass(frozen=True)
 class Lag:
     """A first-order plant with dead time, K·exp(−L·s)/(τ·s + 1): K in degrees per MPa, τ and L in seconds."""
@@ -44,7 +48,7 @@ class Margins:
 
 @dataclass(frozen=True)
 class Tuning:
-    """Gains, how they were found, and what they have. closed_loop_s: SIMC's τc. lead_s: lag and dead time, the preview for a feed-forward.
+    """Gains, how they were found, and what they have. closed_loop_s: SIMC's τc. lead_s: the plant's median lag and dead time, the preview for a feed-forward.
     margins: at each operating point, in their order; worst: index of the one with the largest Ms."""
 
     kp_MPa_per_deg: float
@@ -104,22 +108,23 @@ def tune(
 ) -> Tuning:
     """SIMC gains for a plant known at several operating points, safe at all of them.
 
-    The rule gets the largest gain, the longest dead time and the median lag; half a period of the loop is added to each dead time for
-    the output that is held between samples. τc is the shortest with which Ms is at most max_sensitivity at every operating point: for
+    The rule gets the largest gain, the longest dead time and the median lag. To each dead time of the plant one and a half periods of the
+    loop are added: the pressure is held between ticks, and is found from the angle of the tick before. τc is the shortest with which Ms is at most max_sensitivity at every operating point: for
     one plant about its dead time, which is SIMC's choice for fast control. closed_loop_s: τc as it is wished; it is
     refused where Ms is larger than that.
 
     Raises InputError for no plant, for one with a gain, lag or dead time that no bench has, and where no gains are safe.
     """
     _check(plants)
-    held = [Lag(p.gain_deg_per_MPa, p.lag_s, p.dead_time_s + 0.5 / rate_Hz) for p in plants]
+    held = [Lag(p.gain_deg_per_MPa, p.lag_s, p.dead_time_s + LOOP_PERIODS / rate_Hz) for p in plants]
     one = Lag(
         max(p.gain_deg_per_MPa for p in held),
         float(np.median([p.lag_s for p in held])),
         max(p.dead_time_s for p in held),
     )
+    lead = float(np.median([p.lag_s + p.dead_time_s for p in plants])) + 0.5 / rate_Hz
     if closed_loop_s is not None:
-        found = _tuned(one, held, closed_loop_s)
+        found = _tuned(one, held, closed_loop_s, lead)
         if not _safe(found, max_sensitivity):
             raise InputError(
                 f"a closed-loop time of {closed_loop_s:g} s gives Ms {found.margins[found.worst].max_sensitivity:.3g} where at most "
@@ -127,29 +132,30 @@ def tune(
                 hint="ask for a longer one, or leave it to the rule",
             )
         return found
-    return _fastest(one, held, max_sensitivity)
+    return _fastest(one, held, lead, max_sensitivity)
 
 
-def _fastest(one: Lag, plants: Sequence[Lag], max_sensitivity: float) -> Tuning:
+def _fastest(one: Lag, plants: Sequence[Lag], lead_s: float, max_sensitivity: float) -> Tuning:
     """The shortest safe τc, to a thousandth, between a tenth of the dead time and a thousand times it."""
     low, high = math.log(0.1 * one.dead_time_s), math.log(1000 * one.dead_time_s)
-    if not _safe(_tuned(one, plants, math.exp(high)), max_sensitivity):
+    if not _safe(_tuned(one, plants, math.exp(high), lead_s), max_sensitivity):
         raise InputError(
             f"no gains keep Ms under {max_sensitivity:g} at every operating point: their lags and gains differ too much",
             hint="identify over a smaller range of pressure",
         )
     while high - low > 1e-3:
         middle = (low + high) / 2
-        low, high = (low, middle) if _safe(_tuned(one, plants, math.exp(middle)), max_sensitivity) else (middle, high)
-    return _tuned(one, plants, math.exp(high))
+        low, high = (
+            (low, middle) if _safe(_tuned(one, plants, math.exp(middle), lead_s), max_sensitivity) else (middle, high)
+        )
+    return _tuned(one, plants, math.exp(high), lead_s)
 
 
-def _tuned(one: Lag, plants: Sequence[Lag], closed_loop_s: float) -> Tuning:
+def _tuned(one: Lag, plants: Sequence[Lag], closed_loop_s: float, lead_s: float) -> Tuning:
     kp, ki = simc(one, closed_loop_s)
     found = tuple(margins(kp, ki, plant) for plant in plants)
     worst = int(np.argmax([m.max_sensitivity if m.stable else math.inf for m in found]))
-    lead = float(np.median([p.lag_s + p.dead_time_s for p in plants]))
-    return Tuning(kp, ki, closed_loop_s, lead, found, worst)
+    return Tuning(kp, ki, closed_loop_s, lead_s, found, worst)
 
 
 def _safe(found: Tuning, max_sensitivity: float) -> bool:

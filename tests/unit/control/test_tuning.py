@@ -90,8 +90,8 @@ def test_tuning_is_safe_at_every_operating_point() -> None:
     assert found.margins[found.worst].max_sensitivity == max(m.max_sensitivity for m in found.margins)
 
 
-def test_one_plant_gets_what_the_rule_says_with_half_a_sample() -> None:
-    found = tune([Lag(300.0, 0.3, 0.095)], rate_Hz=100, max_sensitivity=1.5905)  # Ms of τc = L, as published
+def test_one_plant_gets_what_the_rule_says_with_the_loops_own_dead_time() -> None:
+    found = tune([Lag(300.0, 0.3, 0.085)], rate_Hz=100, max_sensitivity=1.5905)  # Ms of τc = L, as published
     assert found.closed_loop_s == pytest.approx(0.1, rel=2e-3)
     assert found.kp_MPa_per_deg == pytest.approx(0.3 / (300 * 0.2), rel=2e-3)
     assert found.kp_MPa_per_deg / found.ki_MPa_per_deg_s == pytest.approx(0.3)
