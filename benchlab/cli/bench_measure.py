@@ -45,6 +45,10 @@ def measure(text: str, gauge: str, options: dict[str, Any]) -> tuple[list[GaugeR
             return readings, supply_V, f"{SIMULATED} gauge of the twin"
         answers = Answers()
         supply_V, unit = options["supply_V"] or ask_volts(answers), options["unit"] or ask_unit(answers)
+        first = 1000 * levels[0]
+        _say(
+            f"the first level is {first:.0f} kPa by the nominal regulator; if the gauge shows far more, press Ctrl-C: it vents"
+        )
         with ThreadHold(device) as held:
             answers.check = held.check
             readings = take_readings(

@@ -157,7 +157,7 @@ def _comment(found: dict[str, Any]) -> str:
             lines.append(
                 f"{name}: gain {gain['value']:.5g} MPa/V, 95 % interval {gain['low']:.5g} to {gain['high']:.5g};"
             )
-            lines.append(f"  offset {offset['value']:.3g} MPa, {offset['low']:.3g} to {offset['high']:.3g};")
-            lines.append(f"  residual sd {fit['sd_MPa']:.2g} MPa, largest {fit['largest_residual_MPa']:.2g} MPa.")
+            lines.append(f"  offset {offset['value']:.5f} MPa, {offset['low']:.5f} to {offset['high']:.5f};")
+            lines.append(f"  residual sd {fit['sd_MPa']:.5f} MPa, largest {fit['largest_residual_MPa']:.5f} MPa.")
     lines += [printable(warning) for warning in found["warnings"]]
     return "\n".join(lines)

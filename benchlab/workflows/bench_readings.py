@@ -82,7 +82,7 @@ def take_readings(
                 f"the gauge shows {pressure:.4g} MPa at {volts:.3f} V, above the limit of {bench.limit_MPa:g} MPa; vented",
                 hint="is it the unit? else give --max-MPa less, or find out what regulator this is",
             )
-        readings.append(GaugeReading(volts, pressure, monitor, rising))
+        readings.append(GaugeReading(round(volts, 6), round(pressure, 7), round(monitor, 6), rising))
     return readings
 
 
