@@ -40,9 +40,11 @@ def vent(bench: str, calibration: Path | None, as_json: bool) -> None:
     """
     from benchlab.runner.clock import RealClock
     from benchlab.workflows.bench_vent import vent_bench
-    from benchlab.workflows.open_bench import bench_of, open_bench, spec_of
+    from benchlab.workflows.open_bench import bench_doubts, bench_of, open_bench, spec_of
 
     calibrated = bench_of(spec_of(bench), calibration)
+    for doubt in bench_doubts(spec_of(bench), calibrated):
+        click.echo(f"warning: {printable(doubt)}", err=True)
     with closing(open_bench(bench, calibrated)) as device:
         found = vent_bench(device, calibrated, RealClock())
     pressure = found["pressure_MPa"]

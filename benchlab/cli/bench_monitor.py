@@ -58,7 +58,7 @@ def monitor(
     from benchlab.io.files import check_new_file
     from benchlab.runner.clock import RealClock
     from benchlab.workflows.bench_monitor import summary, watch, write_seen
-    from benchlab.workflows.open_bench import bench_of, open_bench, spec_of
+    from benchlab.workflows.open_bench import bench_doubts, bench_of, open_bench, spec_of
 
     if not 0.1 <= rate_Hz <= 200:
         raise UsageError(f"--rate-Hz is {rate_Hz:g}", hint="give 0.1 to 200")
@@ -69,6 +69,8 @@ def monitor(
     if out is not None:
         check_new_file(out, overwrite)
     calibrated = bench_of(spec_of(bench), calibration)
+    for doubt in bench_doubts(spec_of(bench), calibrated):
+        click.echo(f"warning: {printable(doubt)}", err=True)
     kept: list[Seen] = []
     lost: BenchlabError | None = None
     with closing(open_bench(bench, calibrated)) as device:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -45,12 +46,17 @@ def spec_of(text: str) -> Spec:
 def bench_of(spec: Spec, calibration: Path | None = None) -> Bench:
     """What the bench may be asked for: its calibration file's, or what there is without one. Opens no port.
 
-    A twin without a file has the calibration that a twin is made with, a replay the one of its run.
+    A twin without a file has the calibration that a twin is made with, a replay the one of its run. InputError for a bench of metal with
+    the calibration of a twin.
     """
-    from benchlab.io.bench_file import read_bench
+    from benchlab.io.bench_file import is_simulated, read_bench
 
     if calibration is not None:
-        return read_bench(calibration)
+        bench = read_bench(calibration)
+        if spec.kind == "serial" and is_simulated(bench):
+            what = f"its gauge is {bench.gauge!r}: no pressure of a bench of metal may rest on it"
+            raise InputError(what, file=calibration, hint="calibrate this bench with `benchlab bench calibrate`")
+        return bench
     if spec.kind == "twin":
         from benchlab.devices.twin.bench import twin_bench
 
@@ -58,6 +64,13 @@ def bench_of(spec: Spec, calibration: Path | None = None) -> Bench:
     if spec.kind == "replay":
         return _recorded_bench(Path(spec.where))
     return read_bench(None)
+
+
+def bench_doubts(spec: Spec, bench: Bench) -> list[str]:
+    """What whoever uses a bench of metal must be told of its calibration: that there is none, that it is old. Nothing for the others."""
+    from benchlab.io.bench_file import calibration_warnings
+
+    return calibration_warnings(bench, datetime.date.today()) if spec.kind == "serial" else []
 
 
 def open_bench(

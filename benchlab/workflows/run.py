@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from benchlab.bench import LimitError
 from benchlab.devices.interface import Device
 from benchlab.errors import InputError
 from benchlab.io.files import reason_of
@@ -37,7 +41,8 @@ def drive(prepared: Prepared, stop: Stop, on_tick: Callable[[Tick], None] | None
     """Open the bench, begin the journal, execute the plan, vent, let go. Signals go to `stop` meanwhile.
 
     Whatever happens after the bench has answered is told by the end of what is returned. Raises BenchError where the bench cannot be
-    opened, and UsageError or InputError where the journal cannot be begun; then nothing was armed and no file is left.
+    opened or gives less than the plan asks for, and UsageError or InputError where the journal cannot be begun; then nothing was
+    armed and no file is left.
     """
     path = prepared.path(".journal")
     with signals_to(stop):
@@ -45,6 +50,7 @@ def drive(prepared: Prepared, stop: Stop, on_tick: Callable[[Tick], None] | None
         try:
             _make_folder(path.parent)
             about = device.about()
+            _check_ceiling(prepared, about)
             journal = JournalWriter(path, header_of(prepared, about))
             try:
                 end = _executed(prepared, device, journal, stop, on_tick)
@@ -79,6 +85,17 @@ def _executed(
             stop,
             prepared.limits,
             prepared.settings.pause_limit_s,
+        )
+
+
+def _check_ceiling(prepared: Prepared, about: dict[str, Any]) -> None:
+    """Where the device itself gives less than the bench's calibration says, that is refused before it is armed."""
+    peak_MPa = max(0.0, float(np.nanmax(prepared.plan.pressure_MPa, initial=0.0)))
+    ceiling_MPa = float(about.get("ceiling_MPa", math.inf))
+    if peak_MPa > ceiling_MPa + 1e-9:
+        raise LimitError(
+            f"the protocol asks for {peak_MPa:.4g} MPa, and the firmware of this bench gives at most {ceiling_MPa:.4g} MPa",
+            hint="ask for less, or flash what `benchlab bench firmware --calibration FILE` writes",
         )
 
 

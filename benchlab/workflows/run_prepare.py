@@ -22,7 +22,7 @@ from benchlab.protocol.plan import Control, Plan
 from benchlab.runner.guards.bend import expected_along, least_expected_deg
 from benchlab.runner.guards.limits import Limits
 from benchlab.units import FloatArray
-from benchlab.workflows.open_bench import Spec, bench_of, spec_of
+from benchlab.workflows.open_bench import Spec, bench_doubts, bench_of, spec_of
 
 REAL_RATES_HZ = (10.0, 500.0)
 """Of a real or emulated bench: slower and its silence limit vents it, faster and the line cannot answer."""
@@ -126,7 +126,7 @@ def prepare(protocol: str, settings: RunSettings) -> Prepared:
         control=control,
         controller=controller,
         stem=stem,
-        warnings=tuple(warnings),
+        warnings=(*bench_doubts(spec, bench), *warnings),
     )
 
 
