@@ -39,7 +39,7 @@
 
 #define BAUD 500000UL      /* 16 MHz / 16 / 2: exact here, in the FT232 (3 MHz / 6) and in the CH340 (12 MHz / 24) */
 #define TWI_HZ 100000UL    /* slow edges of long wires and weak pull-ups are fine */
-#define WATCHDOG_MS 125    /* the main loop may not take longer */
+#define HUNG_MS 100        /* the main loop may not take longer */
 #define DAC_REFRESH_MS 10  /* the DAC is told its code again this often: so its loss is noticed, and undone */
 #define PARTIAL_MS 3       /* a frame that stops in the middle for this long is thrown away */
 
@@ -59,15 +59,22 @@ static uint8_t reset_cause __attribute__((section(".noinit"))); /* MCUSR as it w
 
 static uint16_t output, target;      /* code that the DAC holds, and that was asked for */
 static uint16_t dac_eeprom, boots;   /* code that the DAC takes at power-on; number of boots */
-static uint8_t flags, allowance, trigger_ms, since_refresh_ms;
+static uint8_t flags, allowance, trigger_ms, since_refresh_ms, spoken_to;
 static uint16_t last_number, crc_errors, dropped;
 static uint32_t heard_ms;            /* when the last valid command came */
 
 static volatile uint32_t clock_ms;
+static volatile uint8_t hung_ms;     /* since the main loop came by */
 static volatile uint16_t sums[2];    /* of the last ADC_SAMPLES conversions: flex, monitor */
 static volatile uint8_t in_ring[64], in_head, in_tail, out_ring[64], out_head, out_tail;
 
 static uint8_t inbox[HEAD + ASKED + CRC], in_box;
+
+static void alive(void) /* the main loop comes by */
+{
+    hung_ms = 0;
+    wdt_reset();
+}
 
 /* ---- Two-wire bus: nothing here waits for ever ---- */
 
@@ -196,11 +203,38 @@ static void dac_forget(void) /* program the code that the DAC takes at power-on 
             twi_byte(0);
         twi_stop();
         do {
-            wdt_reset();
+            alive();
             _delay_ms(1);
         } while (++tries < 100 && !(dac_read(five) && (five[0] & 0x80)));
     }
     dac_eeprom = (uint16_t)(five[3] & 0x0F) << 8 | five[4];
+}
+
+/* ---- Watchdog ---- */
+
+static void watchdog_begin(void)
+{
+    wdt_enable(WDTO_250MS); /* to the reset, interrupts or none; on the way there, `hung` has vented long ago */
+}
+
+/* In the clock's interrupt, as the main loop is stuck: vent, remember why, and let the watchdog reset. */
+static void hung(void)
+{
+    twi_begin();
+    if (!dac_write(0))
+        dac_write(0);
+    eeprom_update_byte(HUNG_AT, 1);
+    for (;;)
+        ;
+}
+
+/* The watchdog outlives the reset that it causes: it is stopped before anything else runs. */
+void first_of_all(void) __attribute__((naked, used, section(".init3")));
+void first_of_all(void)
+{
+    reset_cause = MCUSR;
+    MCUSR = 0;
+    wdt_disable();
 }
 
 /* ---- Clock and ADC ---- */
@@ -210,6 +244,8 @@ ISR(TIMER1_COMPA_vect)
     clock_ms++;
     ADMUX = 1 << REFS0; /* flex, against the supply */
     ADCSRA |= 1 << ADSC;
+    if (++hung_ms >= HUNG_MS)
+        hung();
 }
 
 ISR(ADC_vect)
@@ -253,37 +289,6 @@ static uint16_t mean_sum(uint8_t which) /* in 1/ADC_SAMPLES of a step of the ADC
     uint16_t sum = sums[which];
     sei();
     return sum;
-}
-
-/* ---- Watchdog: the interrupt vents even while the main loop hangs, then the reset follows ---- */
-
-static void watchdog_begin(void)
-{
-    cli();
-    wdt_reset();
-    WDTCSR = (1 << WDCE) | (1 << WDE);
-    WDTCSR = (1 << WDIE) | (1 << WDE) | (1 << WDP1) | (1 << WDP0); /* 125 ms to the interrupt, 125 ms more to the reset */
-    sei();
-}
-
-ISR(WDT_vect)
-{
-    twi_begin();
-    if (!dac_write(0))
-        dac_write(0);
-    eeprom_update_byte(HUNG_AT, 1);
-    wdt_enable(WDTO_15MS);
-    for (;;)
-        ;
-}
-
-/* The watchdog outlives the reset that it causes: it is stopped before anything else runs. */
-void first_of_all(void) __attribute__((naked, used, section(".init3")));
-void first_of_all(void)
-{
-    reset_cause = MCUSR;
-    MCUSR = 0;
-    wdt_disable();
 }
 
 /* ---- Serial line ---- */
@@ -346,7 +351,7 @@ static void tell_hello(uint16_t number)
     uint8_t *at = put16(payload + 4, CEILING_CODE);
     at = put16(at, SLEW_CODES_PER_MS);
     at = put16(at, SILENCE_MS);
-    at = put16(at, WATCHDOG_MS);
+    at = put16(at, HUNG_MS);
     at = put16(at, boots);
     at = put16(at, dac_eeprom);
     *at++ = reset_cause;
@@ -399,8 +404,13 @@ static void set(uint16_t code, uint8_t trigger)
 
 static void obey(uint16_t number, uint8_t command, const uint8_t *payload, uint8_t size)
 {
-    int16_t ahead = number - last_number;
     uint16_t value = size >= 2 ? payload[0] | payload[1] << 8 : 0;
+    int16_t ahead;
+    if (!spoken_to) { /* since boot: whatever the number, it is new */
+        spoken_to = 1;
+        last_number = number - 1;
+    }
+    ahead = number - last_number;
     if (command == HELLO || command == VENT) { /* at any time and with any number: both can only vent */
         vent();
         flags &= ~(REFUSED | SLEWING);
@@ -537,7 +547,7 @@ void setup(void)
 void loop(void)
 {
     static uint8_t done_ms; /* low byte of the last millisecond seen to */
-    wdt_reset();
+    alive();
     if ((uint8_t)clock_ms != done_ms) {
         uint32_t ms = now_ms();
         done_ms = ms;

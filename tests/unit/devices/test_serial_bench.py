@@ -1,0 +1,323 @@
+"""The serial bench over the emulated Nano in lockstep, on lines that lose, double, damage, delay and reorder."""
+
+import itertools
+import math
+import random
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from benchlab.bench import Bench, LimitError, Line
+from benchlab.devices import serial_bench
+from benchlab.devices.emulated import LockstepTransport
+from benchlab.devices.emulator import Emulator
+from benchlab.devices.interface import LostError, Status
+from benchlab.devices.serial_bench import SerialBench
+from benchlab.errors import BenchError
+from tests.unit.devices.faulty_line import FaultyLine
+from tests.unit.devices.nano import BENCH, needs_emulator
+
+pytestmark = needs_emulator
+
+
+@pytest.fixture
+def emulator(tmp_path: Path) -> Iterator[Emulator]:
+    emulator = Emulator(BENCH, lockstep=True, log=tmp_path / "events.txt")
+    yield emulator
+    emulator.close()
+
+
+@pytest.fixture
+def line(emulator: Emulator) -> FaultyLine:
+    return FaultyLine(LockstepTransport(emulator))
+
+
+def ramp(device: SerialBench, line: FaultyLine, ticks: int = 5, start: int = 0, pressure_MPa: float = 0.1) -> list:
+    return [device.exchange((start + tick) / 100, pressure_MPa) for tick in range(ticks)]
+
+
+def causes(device: SerialBench) -> dict[str, int]:
+    return {fault.cause: fault.count for fault in device.faults()}
+
+
+def test_what_it_says_of_itself(line: FaultyLine) -> None:
+    about = SerialBench(line, BENCH).about()
+    assert about["ceiling_code"] == BENCH.ceiling_code and about["ceiling_MPa"] == BENCH.ceiling_MPa
+    assert about["firmware"] == "1.0.0" and about["notes"] == []
+    assert about["slew_MPa_per_s"] == pytest.approx(40_000 * 5 / 4096 * 0.096)
+
+
+def test_a_reading_is_in_the_benchs_units(line: FaultyLine, emulator: Emulator) -> None:
+    emulator.tell("flex 1500")
+    device = SerialBench(line, BENCH)
+    device.arm()
+    readings = ramp(device, line, 100)
+    assert [r.status for r in readings[10:]] == [Status.ARMED] * 90
+    last = readings[-1]
+    assert last.code == BENCH.code(0.1)
+    assert last.pressure_MPa == pytest.approx(BENCH.pressure_MPa(last.code), abs=0.002)
+    assert BENCH.monitor is not None
+    assert last.monitor_V == pytest.approx(BENCH.monitor.inverse(last.pressure_MPa))
+    assert last.flex_V == pytest.approx(1.5, abs=0.006)
+    steps = [b.device_time_s - a.device_time_s for a, b in itertools.pairwise(readings)]
+    assert max(abs(step - 0.01) for step in steps[10:]) < 0.0005
+    assert device.faults() == []
+
+
+def test_without_a_monitor_pressure_is_missing(line: FaultyLine) -> None:
+    device = SerialBench(line, replace(BENCH, monitor=None))
+    assert math.isnan(device.exchange(0.0, 0.0).pressure_MPa)
+
+
+def test_its_clock_goes_on_where_the_nanos_begins_again() -> None:
+    """The Nano's microseconds begin again after 71.6 minutes."""
+    from benchlab.devices.messages import Answer
+
+    device = object.__new__(SerialBench)
+    device._bench, device._hello, device._tally = BENCH, type("H", (), {"adc_samples": 8})(), serial_bench.Tally()
+    device._boot = device._turns = device._micros = 0
+    device._armed = True
+    times = [device._reading(Answer(0, 0, 0, 1, us, 0, 0, 0)).device_time_s for us in (4_294_960_000, 2704)]
+    assert times[1] - times[0] == pytest.approx(0.01)
+
+
+def test_a_firmware_with_a_lower_ceiling_is_told_and_kept(line: FaultyLine) -> None:
+    """The bench may give 0.35 MPa, the firmware was written for 0.3."""
+    wider = replace(BENCH, limit_MPa=0.4)
+    device = SerialBench(line, wider)
+    (note,) = device.about()["notes"]
+    assert "the firmware gives at most 0.3499 MPa, the bench 0.4 MPa" in note
+    device.arm()
+    with pytest.raises(LimitError, match=r"above 0.3499 MPa, the firmware's ceiling"):
+        device.exchange(0.0, 0.36)
+
+
+def test_a_firmware_with_a_higher_ceiling_is_told(line: FaultyLine) -> None:
+    (note,) = SerialBench(line, replace(BENCH, limit_MPa=0.2)).about()["notes"]
+    assert "ceiling lies above the bench's" in note
+
+
+def test_another_protocol_is_refused(line: FaultyLine, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(serial_bench, "PROTOCOL", 9)
+    with pytest.raises(BenchError, match=r"firmware 1.0.0 speaks protocol 1, this benchlab 9; .*bench firmware"):
+        SerialBench(line, BENCH)
+
+
+def test_a_nano_that_still_boots_is_waited_for(line: FaultyLine) -> None:
+    line.down.extend(["lose"] * 10)
+    assert SerialBench(line, BENCH).about()["firmware"] == "1.0.0"
+
+
+def test_nothing_that_answers_is_told(line: FaultyLine) -> None:
+    line.down.extend(["lose"] * 1000)
+    with pytest.raises(BenchError, match=r"no valid frame in 4 s: nothing answers; is the firmware on it") as told:
+        SerialBench(line, BENCH)
+    assert told.value.exit_code == 5
+
+
+class Babble:
+    """Another device, or the wrong baud: it says something all the time, for ever, and never a frame."""
+
+    name, about = "COM7", dict
+
+    def __init__(self) -> None:
+        self.now, self.noise, self.closed = 0.0, random.Random(1), False
+
+    def clock_s(self) -> float:
+        return self.now
+
+    def advance(self, time_s: float) -> None: ...
+
+    def write(self, data: bytes) -> None: ...
+
+    def read(self, timeout_s: float) -> bytes:
+        self.now += 0.02
+        return self.noise.randbytes(10_000)
+
+    def close(self) -> None:
+        self.closed = True
+
+
+def test_garbage_is_told_after_2_s_and_the_port_let_go() -> None:
+    line = Babble()
+    with pytest.raises(
+        BenchError, match=r"COM7: no valid frame in 2 s, but [0-9]+ bytes of something else; is this the Nano"
+    ):
+        SerialBench(line, BENCH)
+    assert line.closed
+
+
+@pytest.mark.parametrize(
+    ("way", "fault", "cause", "answered"),
+    [
+        ("down", "lose", "no answer to a command within 8 ms", False),
+        ("down", "flip", "the device heard a command with a wrong checksum", False),
+        ("down", "cut", "the device heard an old or unfinished command", False),
+        ("down", "double", "an answer that came late, or twice", True),
+        ("down", "late", "no answer to a command within 8 ms", False),
+        ("down", "swap", "the device heard an old or unfinished command", False),
+        ("up", "lose", "no answer to a command within 8 ms", False),
+        ("up", "flip", "an answer with a wrong checksum", False),
+        ("up", "cut", "an answer with a wrong checksum", False),
+        ("up", "double", "an answer that came late, or twice", True),
+        ("up", "late", "an answer that came late, or twice", False),
+        ("up", "swap", "an answer that came late, or twice", False),
+        ("up", "noise", "bytes on the line that are no frame", True),
+    ],
+)
+def test_each_fault_is_survived_and_told_with_its_cause(
+    line: FaultyLine, way: str, fault: str, cause: str, answered: bool
+) -> None:
+    device = SerialBench(line, BENCH)
+    device.arm()
+    ramp(device, line, 20)
+    assert device.faults() == []
+    getattr(line, way).append(fault)
+    (hit,) = ramp(device, line, 1, 20)
+    after = ramp(device, line, 20, 21)
+    assert bool(hit.status & Status.NO_ANSWER) is not answered
+    if not answered:
+        assert hit.code == -1 and math.isnan(hit.pressure_MPa) and math.isnan(hit.device_time_s)
+    assert [r.status for r in after[2:]] == [Status.ARMED] * 18
+    told = causes(device)
+    assert any(cause in each for each in told), told
+    assert not causes(device)
+    assert after[-1].code == BENCH.code(0.1)
+
+
+def test_thousands_of_faults_never_give_more_than_was_asked(
+    line: FaultyLine, emulator: Emulator, tmp_path: Path
+) -> None:
+    rng = random.Random(5)
+    words = ["ok"] * 8 + ["lose", "double", "flip", "cut", "noise", "late", "swap"]
+    device = SerialBench(line, BENCH)
+    device.arm()
+    asked, told = 0, Counter[str]()
+    for tick in range(2000):
+        line.down.append(rng.choice(words))
+        line.up.append(rng.choice(words))
+        pressure = 0.35 * rng.random()
+        asked = max(asked, BENCH.code(pressure))
+        reading = device.exchange(tick / 100, pressure)
+        assert reading.status & (Status.ARMED | Status.NO_ANSWER)
+        told.update(causes(device))
+    codes = [int(row.split()[3]) for row in (tmp_path / "events.txt").read_text().splitlines() if " dac " in row]
+    assert 0.34 < BENCH.pressure_MPa(max(codes)) <= BENCH.pressure_MPa(asked)
+    assert len(told) == 6 and sum(told.values()) > 800
+    line.down.clear()
+    line.up.clear()
+    device.vent()
+    assert emulator.tell("state").code == 0
+
+
+def test_no_answer_for_half_a_second_is_lost(line: FaultyLine) -> None:
+    device = SerialBench(line, BENCH)
+    device.arm()
+    ramp(device, line, 10)
+    line.up.extend(["lose"] * 1000)
+    readings = []
+    with pytest.raises(LostError, match=r"no answer for 0.5 s; was the cable pulled"):
+        for tick in range(10, 200):
+            readings.append(device.exchange(tick / 100, 0.1))
+    assert 45 <= len(readings) <= 55
+    assert all(reading.status == Status.NO_ANSWER for reading in readings)
+    with pytest.raises(BenchError, match=r"not armed"):
+        device.exchange(2.0, 0.1)
+    line.up.clear()
+    device.vent()
+
+
+def test_arm_and_vent_are_asked_again(line: FaultyLine) -> None:
+    device = SerialBench(line, BENCH)
+    line.down.extend(["lose", "flip"])
+    device.arm()
+    line.up.extend(["lose", "flip"])
+    device.vent()
+    told = causes(device)
+    assert told["no answer to `arm`; asked again"] == 2 and told["no answer to `vent`; asked again"] == 2
+
+
+def test_a_vent_that_nobody_confirms_is_lost(line: FaultyLine) -> None:
+    device = SerialBench(line, BENCH)
+    device.arm()
+    line.up.extend(["lose"] * 100)
+    with pytest.raises(LostError, match=r"nobody answered `vent` in 0.5 s"):
+        device.vent()
+    device.close()  # tries once more, and never raises
+    with pytest.raises(LostError, match=r"nobody confirmed"):
+        device.vent()
+
+
+def test_a_reset_in_mid_run_is_told_and_not_mended(line: FaultyLine, emulator: Emulator) -> None:
+    device = SerialBench(line, BENCH)
+    device.arm()
+    ramp(device, line, 10)
+    emulator.tell("reset")
+    readings = [device.exchange(0.1 + tick / 100, 0.0) for tick in range(5)]
+    assert readings[-1].status & Status.REBOOTED and not readings[-1].status & Status.ARMED
+    with pytest.raises(BenchError, match=r"not armed"):
+        device.exchange(0.2, 0.1)
+    with pytest.raises(BenchError, match=r"has booted since it was opened; open it again"):
+        device.arm()
+    device.vent()
+
+
+def test_a_long_silence_is_told(line: FaultyLine) -> None:
+    device = SerialBench(line, BENCH)
+    device.arm()
+    ramp(device, line, 10)
+    reading = device.exchange(0.5, 0.1)
+    assert reading.status & Status.SILENCE and not reading.status & Status.ARMED and reading.code == 0
+    device.arm()
+    assert device.exchange(0.0, 0.1).status & Status.ARMED  # the next run begins at 0 s again
+
+
+def test_a_lost_dac_is_told(line: FaultyLine, emulator: Emulator) -> None:
+    device = SerialBench(line, BENCH)
+    device.arm()
+    ramp(device, line, 10)
+    emulator.tell("dac lost")
+    readings = [device.exchange(0.1 + tick / 100, 0.0) for tick in range(3)]
+    assert readings[-1].status & Status.DAC_LOST and readings[-1].code == -1
+    with pytest.raises(BenchError, match=r"does not arm: its DAC does not acknowledge"):
+        device.arm()
+    with pytest.raises(LostError, match=r"DAC does not acknowledge, .*; take the pressure away by hand"):
+        device.vent()
+    emulator.tell("dac back")
+    device.exchange(0.2, 0.0)
+    device.vent()
+
+
+def test_a_trigger_reaches_the_camera(line: FaultyLine, emulator: Emulator) -> None:
+    device = SerialBench(line, BENCH)
+    device.arm()
+    for tick in range(30):
+        device.exchange(tick / 100, 0.05, trigger=tick in {3, 13})
+    assert emulator.tell("state").triggers == 2
+
+
+def test_an_emulator_that_dies_is_lost(line: FaultyLine, emulator: Emulator) -> None:
+    device = SerialBench(line, BENCH)
+    device.arm()
+    emulator.close()
+    with pytest.raises(LostError, match=r"the emulator has ended"):
+        device.exchange(0.0, 0.1)
+    with pytest.raises(LostError):
+        device.vent()
+    device.close()
+
+
+def test_sensors_wear_the_calibration(emulator: Emulator) -> None:
+    """The emulation's volts are made so that a calibrated bench reads true values from them."""
+    odd = Bench("odd", Line(0.09, 0.002), Line(0.1, -0.05), Line(-80.0, 200.0), calibrated=True, supply_V=4.8)
+    own = Emulator(odd, lockstep=True)
+    device = SerialBench(LockstepTransport(own), odd)
+    device.arm()
+    reading = [device.exchange(tick / 100, 0.2) for tick in range(120)][-1]
+    assert reading.pressure_MPa == pytest.approx(0.2, abs=0.002)
+    assert odd.flex is not None
+    assert odd.flex.of(reading.flex_V) == pytest.approx(314 * 0.2, abs=0.6)
+    device.close()
