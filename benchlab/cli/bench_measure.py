@@ -36,8 +36,9 @@ def measure(text: str, gauge: str, options: dict[str, Any]) -> tuple[list[GaugeR
         raise UsageError(
             f"--max-MPa is {top:g}", hint=f"give at most {nominal.ceiling_MPa:.4g}, the most that a new bench is given"
         )
-    levels, settle_s = levels_MPa(top, options["points"]), options["settle_s"]
+    settle_s = options["settle_s"]
     with closing(open_bench(text, nominal)) as device:
+        levels = levels_MPa(min(top, device.about().get("ceiling_MPa", top)), options["points"])
         if simulated:
             supply_V = options["supply_V"] or nominal.supply_V
             with VirtualHold(device) as hold:

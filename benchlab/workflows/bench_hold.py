@@ -18,6 +18,9 @@ PERIOD_S = 0.02
 RISE_MPA_PER_S = 0.1
 """How fast a level is gone to: slowly, so that none is overshot and hysteresis keeps its sense."""
 
+PATIENCE_S = 300.0
+"""A level is held for so long, and then vented: whoever read the gauge has gone."""
+
 AVERAGED = 25
 """Most readings that a level's monitor volts are the mean of: half a second, and of the second half of the wait at most."""
 
@@ -40,12 +43,20 @@ class ThreadHold:
     The thread vents, not the caller: signals reach the main thread only, so that a second Ctrl-C cannot interrupt it.
     """
 
-    def __init__(self, device: Device, period_s: float = PERIOD_S, rise_MPa_per_s: float = RISE_MPA_PER_S) -> None:
+    def __init__(
+        self,
+        device: Device,
+        period_s: float = PERIOD_S,
+        rise_MPa_per_s: float = RISE_MPA_PER_S,
+        patience_s: float = PATIENCE_S,
+    ) -> None:
         self._device, self._period_s, self._step_MPa = device, period_s, rise_MPa_per_s * period_s
-        self._target_MPa = self._level_MPa = 0.0
+        self._patience_s = patience_s
+        self._target_MPa = self._level_MPa = self._asked_s = 0.0
         self._recent: deque[Reading] = deque(maxlen=AVERAGED)
         self._stop, self._armed, self._ended = threading.Event(), threading.Event(), threading.Event()
         self._error: BaseException | None = None
+        self._clock = RealClock()
         self._thread = threading.Thread(target=self._run, name="benchlab holds the bench")
 
     def __enter__(self) -> ThreadHold:
@@ -66,6 +77,7 @@ class ThreadHold:
             raise self._error
 
     def stand(self, pressure_MPa: float, settle_s: float) -> list[Reading]:
+        self._asked_s = self._clock.now_s()
         self._target_MPa = pressure_MPa
         while abs(self._level_MPa - pressure_MPa) > 1e-9:
             self._pause(self._period_s)
@@ -92,11 +104,11 @@ class ThreadHold:
         try:
             self._device.arm()
             self._armed.set()
-            clock = RealClock()
-            clock.start()
             while not self._stop.is_set():
+                if self._clock.now_s() - self._asked_s > self._patience_s:
+                    raise BenchError(f"nobody asked for another level for {self._patience_s:g} s", hint="begin again")
                 self._level_MPa = _towards(self._level_MPa, self._target_MPa, self._step_MPa)
-                self._recent.append(_checked(self._device.exchange(clock.now_s(), self._level_MPa)))
+                self._recent.append(_checked(self._device.exchange(self._clock.now_s(), self._level_MPa)))
                 self._stop.wait(self._period_s)
         except BaseException as error:
             self._error = error

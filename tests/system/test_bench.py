@@ -265,6 +265,18 @@ def test_a_killed_calibration_is_vented_by_the_firmware(tmp_path: Path) -> None:
         lab.end()
 
 
+def test_a_firmware_with_a_lower_ceiling_is_calibrated_below_it(tmp_path: Path) -> None:
+    with SmallNano(ceiling_code=1300) as nano:
+        lab = Typist(tmp_path, "--bench", f"serial:{nano.port}", "--gauge", "a", "--points", "4", "--settle-s", "0.1",
+                     "--supply-V", "4.9", "--unit", "kPa")  # fmt: skip
+        for number in range(1, 8):
+            lab.wait_for(f"{number}/7")
+            lab.type(f"{1000 * nano.pressure_MPa:.3f}\n")
+        code, shown = lab.end()
+    assert code == 0 and "extrapolated" in shown
+    assert 1290 < nano.highest_code <= 1300
+
+
 def test_a_bench_that_is_lost_ends_the_asking_at_once(tmp_path: Path) -> None:
     with SmallNano() as nano:
         lab = typist(nano, tmp_path, "--supply-V", "4.9", "--unit", "kPa")

@@ -88,6 +88,15 @@ def test_a_bench_that_vented_itself_ends_the_holding() -> None:
     assert device.vents == 1
 
 
+def test_whoever_has_gone_leaves_a_vented_bench() -> None:
+    device = small()
+    with pytest.raises(BenchError, match="nobody asked"), ThreadHold(device, **FAST, patience_s=0.3) as hold:
+        hold.stand(0.05, 0.05)
+        time.sleep(0.6)
+        assert not device.armed and device.vents == 1
+        hold.check()
+
+
 def test_a_bench_that_refuses_to_arm_says_so() -> None:
     class Stubborn(SmallBench):
         def arm(self) -> None:
