@@ -137,7 +137,8 @@ def _compiled(name: str, source: str, suffix: str, compiler: tuple[str, ...], li
             [*compiler, str(text), "-o", str(fresh), *libraries], capture_output=True, text=True, check=False
         )
         if done.returncode:
-            first = next((line for line in done.stderr.splitlines() if "error" in line), done.stderr.strip()[:200])
+            lines = done.stderr.splitlines()
+        first = next((line for line in lines if "error" in line or "cannot find" in line), done.stderr.strip()[:200])
             raise BenchError(f"the {name} does not compile: {first}", hint="sudo apt install libsimavr-dev avr-libc")
         fresh.replace(made)
     return made
