@@ -138,7 +138,9 @@ def _compiled(name: str, source: str, suffix: str, compiler: tuple[str, ...], li
         )
         if done.returncode:
             lines = done.stderr.splitlines()
-        first = next((line for line in lines if "error" in line or "cannot find" in line), done.stderr.strip()[:200])
+            first = next(
+                (line for line in lines if "error" in line or "cannot find" in line), done.stderr.strip()[:200]
+            )
             raise BenchError(f"the {name} does not compile: {first}", hint="sudo apt install libsimavr-dev avr-libc")
         fresh.replace(made)
     return made
