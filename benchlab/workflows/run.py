@@ -22,6 +22,7 @@ from benchlab.runner.run import execute
 from benchlab.runner.stop import Stop, signals_to
 from benchlab.runner.tick import Tick
 from benchlab.runner.undisturbed import undisturbed
+from benchlab.workflows.bench_zero import check_zero
 from benchlab.workflows.open_bench import open_bench
 from benchlab.workflows.run_header import header_of
 from benchlab.workflows.run_prepare import Prepared
@@ -41,8 +42,8 @@ def drive(prepared: Prepared, stop: Stop, on_tick: Callable[[Tick], None] | None
     """Open the bench, begin the journal, execute the plan, vent, let go. Signals go to `stop` meanwhile.
 
     Whatever happens after the bench has answered is told by the end of what is returned. Raises BenchError where the bench cannot be
-    opened or gives less than the plan asks for, and UsageError or InputError where the journal cannot be begun; then nothing was
-    armed and no file is left.
+    opened, gives less than the plan asks for, is not empty or not on its supply, and UsageError or InputError where the journal cannot be
+    begun; then nothing was armed and no file is left.
     """
     path = prepared.path(".journal")
     with signals_to(stop):
@@ -51,6 +52,8 @@ def drive(prepared: Prepared, stop: Stop, on_tick: Callable[[Tick], None] | None
             _make_folder(path.parent)
             about = device.about()
             _check_ceiling(prepared, about)
+            if prepared.spec.kind == "serial":
+                check_zero(device, prepared.bench, RealClock())
             journal = JournalWriter(path, header_of(prepared, about))
             try:
                 end = _executed(prepared, device, journal, stop, on_tick)
