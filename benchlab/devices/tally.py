@@ -32,7 +32,8 @@ class Tally:
                 "the device heard a command with a wrong checksum; it passed it over", _since(before_crc, crc_errors)
             )
             self.count(
-                "the device heard an old or unfinished command; it passed it over", _since(before_dropped, dropped)
+                "the device heard an old, unfinished or unreadable command; it passed it over",
+                _since(before_dropped, dropped),
             )
         self._device = (crc_errors, dropped)
 

@@ -455,12 +455,15 @@ static void forget(uint8_t bytes)
         inbox[n] = inbox[n + bytes];
 }
 
-static void open_inbox(void) /* obey each whole frame in it; what is none is passed over, byte by byte */
+static void open_inbox(void) /* obey each whole frame in it; what is none is passed over, byte by byte, and counted once */
 {
+    static uint8_t astray;
     while (in_box) {
         uint8_t size = in_box > 1 ? inbox[1] : 0, whole = HEAD + size + CRC;
         uint16_t crc = 0xFFFF;
         if (inbox[0] != SYNC || size > ASKED) {
+            dropped += !astray;
+            astray = 1;
             forget(1);
             continue;
         }
@@ -470,9 +473,11 @@ static void open_inbox(void) /* obey each whole frame in it; what is none is pas
             crc = _crc_xmodem_update(crc, inbox[n]);
         if (inbox[HEAD + size] != (crc & 0xFF) || inbox[HEAD + size + 1] != crc >> 8) {
             crc_errors++;
+            astray = 1;
             forget(1);
             continue;
         }
+        astray = 0;
         if (size == size_of(inbox[4]))
             obey(inbox[2] | inbox[3] << 8, inbox[4], inbox + HEAD, size);
         else
@@ -488,8 +493,7 @@ static void hear(void)
     if (in_tail != in_head)
         last_ms = ms;
     else if (in_box && (uint8_t)(ms - last_ms) >= PARTIAL_MS) {
-        dropped++;
-        forget(1);
+        inbox[0] = 0; /* no frame begins here after all */
         open_inbox();
     }
     while (in_tail != in_head) {

@@ -155,10 +155,10 @@ def test_garbage_is_told_after_2_s_and_the_port_let_go() -> None:
     [
         ("down", "lose", "no answer to a command within 8 ms", False),
         ("down", "flip", "the device heard a command with a wrong checksum", False),
-        ("down", "cut", "the device heard an old or unfinished command", False),
+        ("down", "cut", "the device heard an old, unfinished or unreadable command", False),
         ("down", "double", "an answer that came late, or twice", True),
         ("down", "late", "no answer to a command within 8 ms", False),
-        ("down", "swap", "the device heard an old or unfinished command", False),
+        ("down", "swap", "the device heard an old, unfinished or unreadable command", False),
         ("up", "lose", "no answer to a command within 8 ms", False),
         ("up", "flip", "an answer with a wrong checksum", False),
         ("up", "cut", "an answer with a wrong checksum", False),
