@@ -216,6 +216,7 @@ def sample_of(tick: Tick, step: int, answer_s: float, command_V: float) -> tuple
         tick.reference_deg,
         reading.device_time_s,
         tick.status,
+        reading.monitor_V,
     )
 
 
