@@ -179,10 +179,8 @@ def _tell(found: dict[str, Any]) -> None:
     for warning in found["warnings"]:
         _say(f"warning: {warning}")
     for path in found["outputs"]:
-        click.echo(
-            f"  wrote {printable(path)}; write the firmware anew with `benchlab bench firmware --calibration {printable(path)}`",
-            err=True,
-        )
+        _say(f"wrote {path}")
+    _say(f"write the firmware anew with `benchlab bench firmware --calibration {found['outputs'][0]} --out DIR`")
 
 
 def _say(text: str) -> None:

@@ -16,8 +16,10 @@ from benchlab.bench import Bench, Line
 from benchlab.control.regulator_line import RegulatorFit, fit_regulator
 from benchlab.control.straight_line import Interval
 from benchlab.errors import InputError, UsageError, printable
-from benchlab.io.bench_file import BenchFile, GaugeReading, read_bench_file, write_bench_file
-from benchlab.io.files import check_new_file
+from benchlab.io.bench_file import BenchFile, GaugeReading, is_simulated, read_bench_file, write_bench_file
+from benchlab.io.files import check_new_file, written_whole
+from benchlab.report.bench_figure import draw_bench_figure
+from benchlab.report.figures import save_png
 
 FEWEST_MONITOR = 4
 """Readings with monitor volts that its line is fitted to."""
@@ -38,14 +40,15 @@ class CalibrationSettings:
 
 
 def check_calibration_out(out: Path, overwrite: bool) -> None:
-    """Raises UsageError where the bench file could not be written at the end."""
+    """Raises UsageError where the bench file and its picture could not be written at the end."""
     if out.suffix.lower() not in (".yaml", ".yml"):
         raise UsageError("is not a .yaml file", file=out, hint="give --out a name that ends in .yaml")
-    check_new_file(out, overwrite)
+    for path in (out, out.with_suffix(".png")):
+        check_new_file(path, overwrite)
 
 
 def calibrate(readings: Sequence[GaugeReading], settings: CalibrationSettings, out: Path) -> dict[str, Any]:
-    """Fit the regulator's line, and the monitor's where its volts were read, and write the bench file.
+    """Fit the regulator's line, and the monitor's where its volts were read, and write the bench file and a PNG of its name.
 
     The flex sensor's line of a file that is replaced is kept. Returns what was found, as `--json` shows it. Raises InputError for
     readings that pressure should not rest on; then nothing is written.
@@ -81,7 +84,10 @@ def calibrate(readings: Sequence[GaugeReading], settings: CalibrationSettings, o
     if bench.flex is not None and old is not None:
         warnings.append(f"the flex sensor's line is kept from the calibration of {old.bench.date}")
     found = _summary(bench, regulator, watched, readings, warnings, out)
-    write_bench_file(out, BenchFile(bench, tuple(readings), old.flex_from if old else ""), _comment(found))
+    figure = draw_bench_figure(bench, volts, pressure, rising.tolist(), is_simulated(bench))
+    with written_whole(out.with_suffix(".png")) as temporary:
+        save_png(figure, temporary)
+        write_bench_file(out, BenchFile(bench, tuple(readings), old.flex_from if old else ""), _comment(found))
     return found
 
 
@@ -120,7 +126,7 @@ def _summary(
         "regulator": _fit(regulator),
         "monitor": None if monitor is None else _fit(monitor),
         "warnings": list(warnings),
-        "outputs": [str(out)],
+        "outputs": [str(out), str(out.with_suffix(".png"))],
     }
 
 

@@ -222,7 +222,9 @@ def test_a_calibration_is_typed(tmp_path: Path) -> None:
         code, shown_last = lab.end()
         assert code == 0, shown_last
         assert not nano.armed and nano.code == 0 and "silence" not in nano.vents
-    assert "vented" in shown_last and "wrote bench.yaml" in shown_last
+    assert (
+        "vented" in shown_last and "wrote bench.yaml" in shown_last and (tmp_path / "bench.png").stat().st_size > 10_000
+    )
     file = read_bench_file(tmp_path / "bench.yaml")
     assert file.bench.regulator.gain == pytest.approx(REGULATOR.gain, rel=1e-4)
     assert file.bench.regulator.offset == pytest.approx(REGULATOR.offset, abs=1e-5)
