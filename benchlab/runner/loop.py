@@ -217,6 +217,7 @@ def sample_of(tick: Tick, step: int, answer_s: float, command_V: float) -> tuple
         reading.device_time_s,
         tick.status,
         reading.monitor_V,
+        reading.monitor_V,
     )
 
 
