@@ -64,8 +64,8 @@ def _input() -> int:
 def pressure_of(text: str, unit: str) -> float:
     """A typed gauge reading in MPa; `unit` where the text has none. InputError for what is none.
 
-    >>> pressure_of("35 kPa", "MPa"), pressure_of("0,35", "bar")
-    (0.035, 0.035)
+    >>> pressure_of("35 kPa", "MPa"), pressure_of("0,5", "bar")
+    (0.035, 0.05)
     """
     found = _READING.match(text)
     if not found:
