@@ -217,7 +217,6 @@ def sample_of(tick: Tick, step: int, answer_s: float, command_V: float) -> tuple
         reading.device_time_s,
         tick.status,
         reading.monitor_V,
-        reading.monitor_V,
     )
 
 

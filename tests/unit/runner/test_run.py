@@ -11,6 +11,7 @@ import pytest
 
 from benchlab.devices.interface import Fault, LostError, Status
 from benchlab.errors import BenchError, InputError
+from benchlab.io.journal import SAMPLE
 from benchlab.protocol.plan import PlanEvent
 from benchlab.runner.clock import VirtualClock
 from benchlab.runner.end import RunEnd
@@ -41,6 +42,7 @@ def test_each_tick_of_the_plan_is_asked_once_at_its_time_and_written() -> None:
     assert device.calls[0] == "arm" and device.calls[-2:] == ["vent", "stop"]
     assert journal.events[-1] == ("stop", end.record())
     last = journal.samples[-1]
+    assert len(last) == len(SAMPLE.names or ())
     assert last[5] == 0.3 and last[6] == pytest.approx(BENCH.volts(BENCH.code(0.3))) and last[7] == BENCH.code(0.3)
     assert last[10] == pytest.approx(90.0, abs=0.1) and math.isnan(last[11])
 
