@@ -23,7 +23,7 @@ NEEDS = {"avr-gcc": "gcc-avr avr-libc", "cc": "gcc libc6-dev"}
 HEADERS = {"libsimavr-dev": Path("simavr/sim_avr.h"), "libelf-dev": Path("libelf.h")}
 AVR = ("avr-gcc", "-mmcu=atmega328p", "-DF_CPU=16000000UL", "-Os", "-x", "c++")
 HOST = ("cc", "-O2")
-LIBRARIES = ("-lsimavr", "-lelf", "-lm")
+LIBRARIES = ("-l:libsimavr.a", "-lelf", "-lm", "-lpthread")
 
 NOMINAL_MONITOR = Line(0.12, -0.12)
 """Of a bench whose monitor is not wired: 1 to 5 V for 0 to 0.48 MPa, as the regulator of the paper has."""

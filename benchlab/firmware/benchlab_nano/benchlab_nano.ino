@@ -65,7 +65,7 @@ static uint32_t heard_ms;            /* when the last valid command came */
 
 static volatile uint32_t clock_ms;
 static volatile uint8_t hung_ms;     /* since the main loop came by */
-static volatile uint16_t sums[2];    /* of the last ADC_SAMPLES conversions: flex, monitor */
+static volatile uint16_t samples[2][ADC_SAMPLES]; /* the last conversions: flex, monitor */
 static volatile uint8_t in_ring[64], in_head, in_tail, out_ring[64], out_head, out_tail;
 
 static uint8_t inbox[HEAD + ASKED + CRC], in_box;
@@ -250,16 +250,13 @@ ISR(TIMER1_COMPA_vect)
 
 ISR(ADC_vect)
 {
-    static uint16_t ring[2][ADC_SAMPLES];
     static uint8_t at;
-    uint8_t monitor = ADMUX & 1;
-    uint16_t now = ADC;
-    sums[monitor] += now - ring[monitor][at];
-    ring[monitor][at] = now;
-    if (monitor) {
+    if (ADMUX & 1) {
+        samples[1][at] = ADC;
         at = (at + 1) % ADC_SAMPLES;
     } else {
-        ADMUX = (1 << REFS0) | 1;
+        samples[0][at] = ADC;
+        ADMUX = (1 << REFS0) | 1; /* monitor */
         ADCSRA |= 1 << ADSC;
     }
 }
@@ -283,11 +280,14 @@ static uint32_t now_us(void)
     return ms * 1000 + half_us / 2;
 }
 
-static uint16_t mean_sum(uint8_t which) /* in 1/ADC_SAMPLES of a step of the ADC */
+static uint16_t sum_of(uint8_t sensor)
 {
-    cli();
-    uint16_t sum = sums[which];
-    sei();
+    uint16_t sum = 0;
+    for (uint8_t n = 0; n < ADC_SAMPLES; n++) {
+        cli();
+        sum += samples[sensor][n];
+        sei();
+    }
     return sum;
 }
 
@@ -366,8 +366,8 @@ static void tell(uint16_t number, uint8_t command)
     uint8_t payload[MOST];
     uint32_t us = now_us();
     uint8_t *at = put16(payload, output);
-    at = put16(at, mean_sum(0));
-    at = put16(at, mean_sum(1));
+    at = put16(at, sum_of(0));
+    at = put16(at, sum_of(1));
     at = put16(at, flags);
     at = put16(at, us & 0xFFFF);
     at = put16(at, us >> 16);
@@ -499,7 +499,8 @@ static void hear(void)
     while (in_tail != in_head) {
         inbox[in_box++] = in_ring[in_tail];
         in_tail = (in_tail + 1) % sizeof in_ring;
-        open_inbox();
+        if (in_box >= HEAD + CRC)
+            open_inbox();
     }
 }
 

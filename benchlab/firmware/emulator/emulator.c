@@ -49,6 +49,7 @@
 #define MONITOR 1
 
 static avr_t *avr;
+static avr_irq_t *to_twi, *to_adc[2], *to_uart;
 static FILE *event_log;
 static uint8_t feed[1 << 17], said[1 << 17];
 static unsigned feed_at, feed_end, said_end, triggers;
@@ -107,7 +108,6 @@ static void regulator_follow(void);
 static void on_twi(struct avr_irq_t *irq, uint32_t value, void *param)
 {
     avr_twi_msg_irq_t v = {.u.v = value};
-    avr_irq_t *back = avr_io_getirq(avr, AVR_IOCTL_TWI_GETIRQ(0), TWI_IRQ_INPUT);
     (void)irq, (void)param;
     if (v.u.twi.msg & (TWI_COND_STOP | TWI_COND_START))
         dac.selected = dac.index = 0;
@@ -115,17 +115,17 @@ static void on_twi(struct avr_irq_t *irq, uint32_t value, void *param)
         return;
     if (v.u.twi.msg & TWI_COND_START && (v.u.twi.addr & ~1) == 0x62 << 1) {
         dac.selected = v.u.twi.addr;
-        avr_raise_irq(back, avr_twi_irq_msg(TWI_COND_ACK, dac.selected, 1));
+        avr_raise_irq(to_twi, avr_twi_irq_msg(TWI_COND_ACK, dac.selected, 1));
     }
     if (!dac.selected)
         return;
     if (v.u.twi.msg & TWI_COND_WRITE) {
-        avr_raise_irq(back, avr_twi_irq_msg(TWI_COND_ACK, dac.selected, 1));
+        avr_raise_irq(to_twi, avr_twi_irq_msg(TWI_COND_ACK, dac.selected, 1));
         regulator_follow();
         dac_take(v.u.twi.data);
     }
     if (v.u.twi.msg & TWI_COND_READ)
-        avr_raise_irq(back, avr_twi_irq_msg(TWI_COND_READ, dac.selected, dac_give()));
+        avr_raise_irq(to_twi, avr_twi_irq_msg(TWI_COND_READ, dac.selected, dac_give()));
 }
 
 /* ---- Regulator and sensors ---- */
@@ -146,7 +146,7 @@ static void on_conversion(struct avr_irq_t *irq, uint32_t value, void *param)
         if (!isnan(sensor[n].held_mV))
             mV = sensor[n].held_mV;
         mV = mV < 0 ? 0 : mV > avr->vcc ? avr->vcc : mV;
-        avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + n), (uint32_t)lround(mV));
+        avr_raise_irq(to_adc[n], (uint32_t)lround(mV));
     }
 }
 
@@ -204,7 +204,7 @@ static void run_until(avr_cycle_count_t cycle, int stop_when_said)
             next = avr->cycle + QUIET_CYCLES;
         go_to(next);
         if (feed_at < feed_end && avr->cycle >= next_feed) {
-            avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_INPUT), feed[feed_at++]);
+            avr_raise_irq(to_uart, feed[feed_at++]);
             next_feed = avr->cycle + BYTE_CYCLES;
         }
         if (stop_when_said && said_end && avr->cycle >= last_said + QUIET_CYCLES)
@@ -268,6 +268,10 @@ static void begin(const char *path, char **words)
     }
     avr->sleep = no_sleep;
     avr_ioctl(avr, AVR_IOCTL_UART_SET_FLAGS('0'), &flags);
+    to_uart = avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_INPUT);
+    to_twi = avr_io_getirq(avr, AVR_IOCTL_TWI_GETIRQ(0), TWI_IRQ_INPUT);
+    for (int n = 0; n < 2; n++)
+        to_adc[n] = avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + n);
     avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT), on_byte, NULL);
     avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_TWI_GETIRQ(0), TWI_IRQ_OUTPUT), on_twi, NULL);
     avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_OUT_TRIGGER), on_conversion, NULL);
