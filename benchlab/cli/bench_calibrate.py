@@ -64,6 +64,14 @@ if TYPE_CHECKING:
     help="That this bench must never be asked for more than.",
 )
 @click.option(
+    "--full-scale-MPa",
+    "full_scale_MPa",
+    type=Finite("MPA"),
+    default=0.48,
+    show_default=True,
+    help="At 5 V, as the regulator's label says; the readings must fit it by 15 %.",
+)
+@click.option(
     "--settle-s", type=Finite("S"), default=3.0, show_default=True, help="Wait at each level before its reading."
 )
 @click.option("--overwrite", is_flag=True, help="Replace an existing bench file; its flex sensor's line is kept.")
@@ -76,7 +84,7 @@ def calibrate(bench: str | None, gauge: str, out: Path, overwrite: bool, as_json
     level where the readings so far foresee more than --limit-MPa.
 
     Refused are readings that pressure should not rest on: too few or too close levels, pressure that falls with the volts, R² below
-    0.995, and a reading unlike the others, by its number.
+    0.995, a reading unlike the others, by its number, and a full scale unlike the regulator's label.
 
     \b
     Examples:
@@ -100,7 +108,9 @@ def calibrate(bench: str | None, gauge: str, out: Path, overwrite: bool, as_json
         from benchlab.cli.bench_measure import measure
 
         readings, supply_V, gauge = measure(str(bench), gauge, options)
-    settings = CalibrationSettings(options["name"] or out.stem, gauge, supply_V, options["limit_MPa"], date)
+    settings = CalibrationSettings(
+        options["name"] or out.stem, gauge, supply_V, options["limit_MPa"], date, options["full_scale_MPa"]
+    )
     try:
         found = fit(readings, settings, out)
     except InputError as error:
@@ -132,6 +142,8 @@ def _check(bench: str | None, gauge: str, options: dict[str, Any]) -> None:
         raise UsageError(f"--unit {unit!r} is not a unit of pressure", hint="give kPa, MPa, bar or psi")
     if not 0 < options["limit_MPa"] <= 1:
         raise UsageError(f"--limit-MPa is {options['limit_MPa']:g}", hint="give more than 0 and at most 1 MPa")
+    if not 0.005 <= options["full_scale_MPa"] <= 5:
+        raise UsageError(f"--full-scale-MPa is {options['full_scale_MPa']:g}", hint="give 0.005 to 5 MPa, at 5 V")
     if not 0.1 <= options["settle_s"] <= 600:
         raise UsageError(f"--settle-s is {options['settle_s']:g}", hint="give 0.1 to 600")
     if options["date"] is not None:

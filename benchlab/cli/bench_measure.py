@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from benchlab.bench import Bench
+from benchlab.bench import Bench, Line
 from benchlab.cli.bench_answers import Answers, ask_unit, ask_volts, pressure_of
 from benchlab.errors import InputError, UsageError, printable
 from benchlab.io.bench_file import SIMULATED, GaugeReading
@@ -30,7 +30,7 @@ def measure(text: str, gauge: str, options: dict[str, Any]) -> tuple[list[GaugeR
     if simulated and kind != "twin":
         raise UsageError("--gauge twin is the simulated gauge of a twin", hint=f"say which gauge is at {text}")
     # What is not calibrated yet is driven as a bench that nobody calibrated.
-    nominal = Bench(options["name"] or kind, limit_MPa=options["limit_MPa"])
+    nominal = Bench(options["name"] or kind, Line(options["full_scale_MPa"] / 5, 0.0), limit_MPa=options["limit_MPa"])
     top = options["max_MPa"] or nominal.ceiling_MPa
     if not 0 < top <= nominal.ceiling_MPa:
         raise UsageError(

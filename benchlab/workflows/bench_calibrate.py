@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 import benchlab
-from benchlab.bench import Bench, Line
-from benchlab.control.regulator_line import RegulatorFit, fit_regulator
+from benchlab.bench import NOMINAL_GAIN_MPA_PER_V, Bench, Line
+from benchlab.control.regulator_line import RegulatorFit, check_full_scale, fit_regulator
 from benchlab.control.straight_line import Interval
 from benchlab.errors import InputError, UsageError, printable
 from benchlab.io.bench_file import BenchFile, GaugeReading, is_simulated, read_bench_file, write_bench_file
@@ -30,13 +30,15 @@ COVERED = 0.9
 
 @dataclass(frozen=True)
 class CalibrationSettings:
-    """What a bench file says besides its lines. name: of the bench. supply_V: measured with a multimeter. date: ISO."""
+    """What a bench file says besides its lines. name: of the bench. supply_V: measured with a multimeter. date: ISO.
+    full_scale_MPa: at 5 V, as the regulator's label says."""
 
     name: str
     gauge: str
     supply_V: float
     limit_MPa: float
     date: str
+    full_scale_MPa: float = 5 * NOMINAL_GAIN_MPA_PER_V
 
 
 def check_calibration_out(out: Path, overwrite: bool) -> None:
@@ -58,6 +60,7 @@ def calibrate(readings: Sequence[GaugeReading], settings: CalibrationSettings, o
     )
     rising = np.array([bool(r.rising) for r in readings])
     regulator = fit_regulator(volts, pressure, rising, "regulator")
+    check_full_scale(regulator.line, settings.full_scale_MPa)
     wired = np.isfinite(monitor)
     watched = (
         fit_regulator(monitor[wired], pressure[wired], rising[wired], "monitor")

@@ -31,8 +31,9 @@ class Seen:
 
     @property
     def flags(self) -> str:
-        """The status in words: `dac lost, rebooted`."""
-        return ", ".join((flag.name or "").lower().replace("_", " ") for flag in Status if flag in self.reading.status)
+        """The status in words: `dac lost, silence`. That it booted is no news of a bench that nobody armed."""
+        told = self.reading.status & ~Status.REBOOTED
+        return ", ".join((flag.name or "").lower().replace("_", " ") for flag in Status if flag in told)
 
     def row(self) -> dict[str, Any]:
         """By COLUMNS; None for what is not known."""

@@ -312,6 +312,10 @@ def test_readings_from_a_table_need_no_bench(benchlab, tmp_path: Path) -> None:
     assert bench.name == "left" and bench.monitor is None and "monitor: not wired" in done.err
     assert done.json["ceiling_code"] == bench.ceiling_code
     assert benchlab(*arguments).code == 2  # exists
+    psi = tmp_path / "psi.csv"
+    psi.write_text("volts,pressure_kPa\n" + "".join(f"{v},{145.04 * REGULATOR.of(v):.3f}\n" for v in volts))
+    done = benchlab(*arguments[:3], psi, *arguments[4:], "--overwrite")
+    assert done.code == 3 and "0.0698 MPa at 5 V" in done.err and "is it the unit" in done.err
     table.write_text(table.read_text().replace("192.000", "19.200", 1))
     done = benchlab(*arguments, "--overwrite")
     assert done.code == 3 and "reading 4" in done.err and "pressure_MPa" in done.err
