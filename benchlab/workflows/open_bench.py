@@ -115,12 +115,13 @@ def open_bench(
 
 def _replay(path: Path) -> Device:
     from benchlab.devices.replay import Replay
+    from benchlab.io.drive_file import trigger_ticks
     from benchlab.io.journal import read_journal
 
     journal = read_journal(path)
     if not len(journal.samples):
         raise InputError("holds no sample", file=path, hint="replay a journal of a run that began")
-    return Replay(journal.samples, journal.header.get("device", {}))
+    return Replay(journal.samples, journal.header.get("device", {}), trigger_ticks(journal))
 
 
 def _recorded_bench(path: Path) -> Bench:
