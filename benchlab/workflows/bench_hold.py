@@ -93,8 +93,16 @@ class ThreadHold:
             raise self._error
 
     def _leave(self) -> None:
+        """Wait until it is vented; what interrupts the waiting is raised after that."""
         self._stop.set()
-        self._thread.join()
+        interrupted: BaseException | None = None
+        while self._thread.is_alive():
+            try:
+                self._thread.join(0.1)
+            except BaseException as error:
+                interrupted = error
+        if interrupted is not None:
+            raise interrupted
 
     def _pause(self, seconds: float) -> None:
         self._ended.wait(seconds)

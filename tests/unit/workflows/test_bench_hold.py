@@ -1,5 +1,7 @@
 """A bench is held, spoken to all the time, and vented at every end of the holding."""
 
+import _thread
+import threading
 import time
 
 import pytest
@@ -86,6 +88,20 @@ def test_a_bench_that_vented_itself_ends_the_holding() -> None:
     with pytest.raises(BenchError), ThreadHold(device, **FAST) as hold:
         hold.stand(0.05, 5.0)
     assert device.vents == 1
+
+
+def test_a_second_ctrl_c_waits_for_the_vent() -> None:
+    class Slow(SmallBench):
+        def vent(self) -> None:
+            time.sleep(0.3)
+            super().vent()
+
+    device = Slow(Bench("new"))
+    with pytest.raises(KeyboardInterrupt), ThreadHold(device, **FAST) as hold:
+        hold.stand(0.05, 0.01)
+        threading.Timer(0.1, _thread.interrupt_main).start()
+        raise KeyboardInterrupt
+    assert device.vents == 1 and not device.armed
 
 
 def test_whoever_has_gone_leaves_a_vented_bench() -> None:
