@@ -14,12 +14,13 @@ The house has floors, and imports only go down (checked by import-linter in the 
     stats       values of samples -> do designs differ, how well do they repeat
     protocol    segments -> plan: pressure or reference angle, tick by tick
     control     flex sensor, plant -> gains; PI and feed-forward; tracking
+    twin        response curve + effects -> a simulated bench
     actuator    the fabric-shelled design
     bench       volts <-> pressure, sensors, limits, as calibrated
     units       what a pressure or a length may be written in
     errors      what can go wrong, and with which exit code
 
-(runner and report are one floor, devices and io another, and vision to control a floor of numeric kernels; rooms on one floor
+(runner and report are one floor, devices and io another, and vision to twin a floor of numeric kernels; rooms on one floor
 do not see each other.)
 
 See:      video -> frames -> markers -> linked tracks -> circle -> curvature series -> result file -> picture.

@@ -109,7 +109,7 @@ def open_bench(
     if seed is not None:
         settings = replace(settings, seed=seed)
     if curve is not None:
-        settings = replace(settings, curve=curve)
+        settings = settings.with_curve(*curve)
     return Twin(settings, bench)
 
 
