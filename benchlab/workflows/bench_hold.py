@@ -96,9 +96,10 @@ class ThreadHold:
         """Wait until it is vented; what interrupts the waiting is raised after that."""
         self._stop.set()
         interrupted: BaseException | None = None
-        while self._thread.is_alive():
+        while True:
             try:
-                self._thread.join(0.1)
+                self._thread.join()
+                break
             except BaseException as error:
                 interrupted = error
         if interrupted is not None:
