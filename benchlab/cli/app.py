@@ -18,6 +18,7 @@ from benchlab.cli.design import design
 from benchlab.cli.export import export
 from benchlab.cli.fit_material import fit_material
 from benchlab.cli.force import force
+from benchlab.cli.recover import recover
 from benchlab.cli.report import report
 from benchlab.cli.sample_data import sample_data
 from benchlab.cli.simulate import simulate
@@ -76,6 +77,7 @@ cli.add_command(design)
 cli.add_command(export)
 cli.add_command(fit_material)
 cli.add_command(force)
+cli.add_command(recover)
 cli.add_command(report)
 cli.add_command(sample_data)
 cli.add_command(simulate)

@@ -1,0 +1,69 @@
+"""From the journal of a run to its drive file, table and picture: at the normal end of a run and after a crash alike."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from benchlab.errors import InputError, UsageError
+from benchlab.io.drive_file import origin, write_drive_file
+from benchlab.io.drive_table import write_drive_csv
+from benchlab.io.files import cannot_write, check_new_file, check_regular_file, sha256, written_whole
+from benchlab.io.journal import Journal, read_journal, still_written
+from benchlab.report.drive_figure import draw_drive_figure
+from benchlab.report.figures import save_png
+
+SUFFIXES = (".h5", ".csv", ".png")
+
+
+def write_results(path: Path, out: Path | None = None, overwrite: bool = False) -> dict[str, Any]:
+    """Write `<name>.h5`, `.csv` and `.png` of a journal beside it, or in the folder `out`, and say what is in them.
+
+    The journal is only read. Raises UsageError for a journal that is still being written, a missing folder, or a file that is there
+    without `overwrite`, and InputError for what is no journal, one without a sample, or a disk that refuses.
+    """
+    check_regular_file(path)
+    if still_written(path):
+        raise UsageError("is still being written", file=path, hint="its run makes these files itself when it ends")
+    outputs = [(out or path.parent) / f"{path.stem}{suffix}" for suffix in SUFFIXES]
+    for output in outputs:
+        if output.resolve() == path.resolve():
+            raise UsageError("is read here and would be replaced", file=output, hint="give the journal another name")
+        check_new_file(output, overwrite)
+    journal = read_journal(path)
+    if not len(journal.samples):
+        raise InputError("holds no sample", file=path, hint="the run ended before its first tick was answered")
+    drive_file, table, picture = outputs
+    write_drive_file(drive_file, journal, {"file": path.name, "sha256": sha256(path)})
+    write_drive_csv(table, journal)
+    with written_whole(picture) as temporary:
+        try:
+            save_png(draw_drive_figure(journal), temporary)
+        except OSError as error:
+            raise cannot_write(error, picture) from error
+    return {"journal": str(path), **summary(journal), "outputs": [str(output) for output in outputs]}
+
+
+def summary(journal: Journal) -> dict[str, Any]:
+    """What a journal holds and lacks, in JSON's own types.
+
+    complete: whether it has a record of its end. vented: None where nobody knows.
+    """
+    stop = journal.stop or {}
+    ticks = journal.header.get("plan", {}).get("ticks")
+    return {
+        "title": str(journal.header.get("title", "")),
+        "origin": origin(journal.header) or "measured",
+        "complete": journal.complete,
+        "reason": stop.get("reason"),
+        "words": stop.get("words"),
+        "vented": stop.get("vented"),
+        "samples": len(journal.samples),
+        "ticks": len(set(journal.samples["tick"].tolist())),
+        "ticks_planned": ticks,
+        "last_time_s": float(journal.samples["time_s"][-1]),
+        "last_command_MPa": float(journal.samples["command_MPa"][-1]),
+        "events": len(journal.events),
+        "lost_bytes": journal.lost_bytes,
+        "lost": journal.losses_told,
+    }
