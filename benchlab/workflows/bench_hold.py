@@ -60,8 +60,8 @@ class ThreadHold:
         self._thread = threading.Thread(target=self._run, name="benchlab holds the bench")
 
     def __enter__(self) -> ThreadHold:
-        self._thread.start()
         try:
+            self._thread.start()
             while not self._armed.wait(0.05):
                 self.check()
         except BaseException:
@@ -93,13 +93,15 @@ class ThreadHold:
             raise self._error
 
     def _leave(self) -> None:
-        """Wait until it is vented; what interrupts the waiting is raised after that."""
+        """Wait until it is vented; what interrupts the waiting is raised after that.
+
+        Not by joining the thread: Python 3.11 takes a thread for ended whose join was interrupted.
+        """
         self._stop.set()
         interrupted: BaseException | None = None
-        while True:
+        while self._thread.ident is not None and not self._ended.is_set():
             try:
-                self._thread.join()
-                break
+                self._ended.wait()
             except BaseException as error:
                 interrupted = error
         if interrupted is not None:
