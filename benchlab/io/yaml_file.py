@@ -12,6 +12,7 @@ import io
 import json
 import math
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -23,6 +24,7 @@ from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
 from benchlab.errors import InputError
 from benchlab.io.files import cannot_write, check_regular_file, written_whole
+from benchlab.io.yaml_units import in_unit_of_key
 
 MAX_BYTES = 1_000_000
 MAX_DEPTH = 32
@@ -44,13 +46,19 @@ def read_document(path: Path, model: type[Model]) -> Model:
 
     Raises UsageError for a missing file, InputError naming line, key, value and remedy of everything that is wrong.
     """
-    text = _text(path)
+    return read_document_with_lines(path, model)[0]
+
+
+def read_document_with_lines(path: Path, model: type[Model]) -> tuple[Model, dict[Place, int]]:
+    """The same, and the line of each key and item by its place, as ("segments", 2, "ramp")."""
+    text = read_text(path)
     lines: dict[Place, int] = {}
     data = _parsed(path, text, lines)
     try:
-        return model.model_validate_json(json.dumps(data), strict=True)
+        return model.model_validate_json(json.dumps(data), strict=True), lines
     except ValidationError as error:
-        raise _refused(path, error, lines, _known_keys(model)) from None
+        known = _known_keys(model)
+        raise refused(path, [_one(dict(e), lines, known) for e in error.errors(include_url=False)]) from None
 
 
 def write_document(path: Path, document: dict[str, Any], header_comment: str = "") -> None:
@@ -76,7 +84,8 @@ def write_document(path: Path, document: dict[str, Any], header_comment: str = "
             raise cannot_write(error, path) from error
 
 
-def _text(path: Path) -> str:
+def read_text(path: Path) -> str:
+    """The text of a small file in UTF-8 or UTF-16. Raises UsageError for a missing file, InputError for one that is none."""
     if (size := check_regular_file(path).st_size) > MAX_BYTES:
         raise InputError(f"{size / 1e6:.1f} MB, more than the limit of {MAX_BYTES / 1e6:g} MB for YAML", file=path)
     try:
@@ -161,8 +170,6 @@ def _check_plain(path: Path, value: Any, place: Place, lines: dict[Place, int]) 
     elif isinstance(value, list):
         for index, item in enumerate(value):
             _check_plain(path, item, (*place, index), lines)
-    elif isinstance(value, float) and not math.isfinite(value):
-        raise InputError(f"{_name(place)} is {value}", file=path, where=where, hint="give a finite number")
     elif value is not None and not isinstance(value, (str, bool, int, float)):
         what = f"{_name(place)} reads as a {type(value).__name__}, {value}"
         raise InputError(what, file=path, where=where, hint="quote it if text is meant")
@@ -174,12 +181,12 @@ def _name(place: Place) -> str:
     return text.removeprefix(".") or "the document"
 
 
-def _refused(path: Path, error: ValidationError, lines: dict[Place, int], known: set[str]) -> InputError:
-    found = [_one(dict(e), lines, known) for e in error.errors(include_url=False)]
+def refused(path: Path, found: Sequence[tuple[str, str, str]]) -> InputError:
+    """One error of all that is wrong: each its line (empty: of the whole file), what, and the remedy."""
     if len(found) == 1:
         line, what, remedy = found[0]
         return InputError(what, file=path, where=line, hint=remedy)
-    shown = [f"{line}: {what} ({remedy})" for line, what, remedy in found[:MAX_ERRORS]]
+    shown = [f"{line}{': ' * bool(line)}{what} ({remedy})" for line, what, remedy in found[:MAX_ERRORS]]
     if len(found) > MAX_ERRORS:
         shown.append(f"and {len(found) - MAX_ERRORS} more")
     return InputError(f"{len(found)} things are wrong: " + "; ".join(shown), file=path, hint=None)
@@ -197,12 +204,23 @@ def _one(error: dict[str, Any], lines: dict[Place, int], known: set[str]) -> tup
         inside = f" in {_name(place)}" if place else ""
         return line, f"{error['loc'][-1]} is missing{inside}", f"add `{error['loc'][-1]}:`"
     if kind == "extra_forbidden":
-        close = difflib.get_close_matches(str(place[-1]), sorted(known), n=1)
-        return line, f"unknown key {_name(place)}", f"did you mean {close[0]}?" if close else "remove it"
+        return line, f"unknown key {_name(place)}", _remedy(str(place[-1]), value, known)
+    if place and isinstance(value, str) and (wanted := in_unit_of_key(str(place[-1]), value, known)):
+        return line, f"{_name(place)} is {json.dumps(value, ensure_ascii=False)}", f"write {wanted}"
+    if isinstance(value, float) and not math.isfinite(value):
+        return line, f"{_name(place)} is {value}", "give a finite number"
     shown = json.dumps(value, ensure_ascii=False, default=str)
     shown = shown if len(shown) <= 60 else shown[:57] + "..."
     wish = message.removeprefix("Input should be ").removeprefix("Value error, ")
     return line, f"{_name(place)} is {shown}", f"give {wish}" if wish != message and "Value" not in message else wish
+
+
+def _remedy(key: str, value: object, known: set[str]) -> str:
+    """What to do about a key that is not known."""
+    if wanted := in_unit_of_key(key, value, known):
+        return f"write {wanted}"
+    close = difflib.get_close_matches(key, sorted(known), n=1)
+    return f"did you mean {close[0]}?" if close else "remove it"
 
 
 def _known_keys(model: type[BaseModel]) -> set[str]:

@@ -15,6 +15,7 @@ class Step:
     """One item of a plan. kind: ramp, hold, sine, triangle, vent, curvature. label: in words with units.
 
     counts: which time round of the enclosing repeats and cycles, outermost first, from 1. line: of the protocol file, 0 unknown.
+    start, end, low, high, slew: exact, in MPa and MPa/s; None in closed loop. slew: the steepest slope within the step, either way.
     """
 
     kind: str
@@ -23,6 +24,11 @@ class Step:
     label: str
     counts: tuple[int, ...] = ()
     line: int = 0
+    start_MPa: float | None = None
+    end_MPa: float | None = None
+    low_MPa: float | None = None
+    high_MPa: float | None = None
+    slew_MPa_per_s: float | None = None
 
 
 @dataclass(frozen=True)
@@ -49,11 +55,11 @@ class Control:
 
 @dataclass(frozen=True)
 class Plan:
-    """T ticks at rate_Hz, from 0 s.
+    """T ticks at rate_Hz, from 0 s; the last is the first at or after the end of the last step.
 
     time_s: (T,). pressure_MPa: (T,) asked for, NaN where a controller decides. reference_deg: (T,) bending angle that the controller
-    follows, NaN elsewhere. step: (T,) index into steps. limit_MPa: the protocol's own, at most the bench's.
-    control: None where no step is closed-loop, or the protocol leaves the gains to the command.
+    follows, NaN elsewhere. step: (T,) index into steps. limit_MPa: the protocol's own; the bench's ceiling holds besides.
+    control: None where no step is closed-loop, or the protocol leaves the gains to the command. about: what it is for.
     """
 
     title: str
@@ -66,11 +72,19 @@ class Plan:
     reference_deg: FloatArray
     step: NDArray[np.int64]
     control: Control | None = None
+    about: str = ""
 
     @property
     def duration_s(self) -> float:
+        """Until the end of the last step."""
         return self.steps[-1].end_s if self.steps else 0.0
 
     @property
     def closed_loop(self) -> bool:
+        """Whether a controller decides the pressure anywhere."""
         return bool(np.isfinite(self.reference_deg).any())
+
+    @property
+    def ends_vented(self) -> bool:
+        """Whether the protocol itself ends at 0 MPa; the runner vents in any case."""
+        return bool(len(self.pressure_MPa) and self.pressure_MPa[-1] == 0)
