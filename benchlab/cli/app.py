@@ -13,6 +13,7 @@ import benchlab
 from benchlab.cli.analyze import analyze
 from benchlab.cli.bench import bench
 from benchlab.cli.calibrate import calibrate
+from benchlab.cli.control import control
 from benchlab.cli.cut import cut
 from benchlab.cli.design import design
 from benchlab.cli.export import export
@@ -72,6 +73,7 @@ def cli(debug: bool) -> None:
 cli.add_command(analyze)
 cli.add_command(bench)
 cli.add_command(calibrate)
+cli.add_command(control)
 cli.add_command(cut)
 cli.add_command(design)
 cli.add_command(export)

@@ -1,0 +1,81 @@
+"""A run on a pressure bench, as the commands of `benchlab control` look at it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchlab.bench import Bench
+from benchlab.errors import InputError
+from benchlab.io.angle_series import read_angle_series
+from benchlab.io.drive_file import origin, read_drive_file
+from benchlab.io.journal import Journal
+from benchlab.io.recorded_bench import recorded_bench
+from benchlab.units import FloatArray
+
+
+@dataclass(frozen=True)
+class DrivenRun:
+    """What was asked for and measured, tick by tick, with the bench and the plan that it was made with."""
+
+    path: Path
+    journal: Journal
+    bench: Bench
+
+    def column(self, name: str) -> FloatArray:
+        """(T,) of a field of the journal's SAMPLE."""
+        return np.asarray(self.journal.samples[name], dtype=float)
+
+    @property
+    def header(self) -> dict[str, Any]:
+        return self.journal.header
+
+    @property
+    def title(self) -> str:
+        return str(self.header.get("title", self.path.stem))
+
+    @property
+    def rate_Hz(self) -> float:
+        return float(self.header["plan"]["rate_Hz"])
+
+    @property
+    def ceiling_MPa(self) -> float:
+        """The most that could be asked for in this run: of the plan and of the bench."""
+        return min(float(self.header["plan"]["limit_MPa"]), self.bench.ceiling_MPa)
+
+    @property
+    def simulated(self) -> bool:
+        """Whether nothing in it was measured."""
+        return bool(origin(self.header))
+
+    @property
+    def bench_words(self) -> str:
+        """`bench twin, simulated (twin), seed 3` or `bench lab-1`."""
+        seed = self.header.get("seed")
+        words = [f"bench {self.bench.name}", origin(self.header), "" if seed is None else f"seed {seed}"]
+        return ", ".join(word for word in words if word)
+
+
+def read_driven(path: Path) -> DrivenRun:
+    """Read a drive file. Raises UsageError and InputError as `read_drive_file`, and for a head without plan or bench."""
+    journal = read_drive_file(path)
+    plan = journal.header.get("plan")
+    if not isinstance(plan, dict) or not all(
+        isinstance(plan.get(name), float | int) for name in ("rate_Hz", "limit_MPa")
+    ):
+        raise InputError("does not say which plan was run", file=path, hint="was it written by `benchlab run`?")
+    return DrivenRun(path, journal, recorded_bench(journal.header, path))
+
+
+def truth_of(path: Path | None, run: DrivenRun) -> FloatArray | None:
+    """(T,) true angle at the run's ticks, of a table on its clock; None without one."""
+    if path is None:
+        return None
+    if not run.simulated:
+        hint = "leave --truth out"
+        raise InputError("was made on a bench of which nobody knows the truth", file=run.path, hint=hint)
+    seen = read_angle_series(path)
+    return np.interp(run.column("time_s"), seen.time_s, seen.angle_deg, left=np.nan, right=np.nan)
