@@ -117,7 +117,7 @@ def _tell_plan(found: dict[str, Any]) -> None:
     peak, slew = plan["peak_MPa"], plan["slew_MPa_per_s"]
     lines = [
         f"{plan['title']}: {plan['duration_s']:g} s, {plan['ticks']} ticks at {plan['rate_Hz']:g} Hz, {plan['steps']} steps",
-        f"  asks for up to {peak or 0:.4g} MPa, at most {slew or 0:.3g} MPa/s{', and angles' * plan['closed_loop']}",
+        f"  asks for up to {peak or 0:.4g} MPa, in ramps of up to {slew or 0:.3g} MPa/s{', and for angles' * plan['closed_loop']}",
         f"  bench {found['bench_spec']}: {bench['name']}, up to {bench['ceiling_MPa']:.4g} MPa, {bench['ceiling_V']:.3f} V",
         f"  watched: {', '.join(found['guards'])}",
         *([f"  gains: {found['control']}"] if found["control"] else []),
@@ -133,7 +133,7 @@ def _tell(found: dict[str, Any]) -> None:
     """How it ended, warnings and files, on standard error."""
     done = f"{found['ticks']} of {found['ticks_planned']} ticks in {found['time_s']:.1f} s"
     late = found["late_ms"]
-    lateness = f", late by {late['p50']:.2g} ms (median) to {late['max']:.2g} ms" if late else ""
+    lateness = f", late by {late['p50']:.2g} ms (median) to {late['max']:.2g} ms" if late else ", in virtual time"
     click.echo(f"{printable(found['reason'])}: {printable(found['words'])}", err=True)
     click.echo(f"  {done}{lateness}; {_vented(found)}", err=True)
     for warning in found["warnings"]:

@@ -9,7 +9,8 @@ from pathlib import Path
 from benchlab.bench import Bench
 from benchlab.devices.interface import Device
 from benchlab.errors import InputError, UsageError
-from benchlab.units import FloatArray
+from benchlab.twin.curve import ResponseCurve
+from benchlab.twin.settings import TwinSettings
 
 NEEDS = {"twin": None, "serial": "PORT", "emulated": None, "replay": "FILE"}
 """What must follow the kind of a bench after a colon. A twin may be followed by a file."""
@@ -24,6 +25,15 @@ class Spec:
 
     def __str__(self) -> str:
         return f"{self.kind}:{self.where}" if self.where else self.kind
+
+
+@dataclass(frozen=True)
+class Actuator:
+    """What is known of the actuator on a bench. length_mm: None where only the curve is."""
+
+    curve: ResponseCurve
+    name: str
+    length_mm: float | None = None
 
 
 def spec_of(text: str) -> Spec:
@@ -43,7 +53,24 @@ def spec_of(text: str) -> Spec:
     return Spec(kind, where)
 
 
-def bench_of(spec: Spec, calibration: Path | None = None) -> Bench:
+def twin_of(spec: Spec, seed: int | None = None, actuator: Actuator | None = None) -> TwinSettings | None:
+    """What a twin is made from; None for another bench. seed, actuator: in place of its file's.
+
+    Raises UsageError and InputError as `read_twin`.
+    """
+    if spec.kind != "twin":
+        return None
+    from benchlab.io.twin_file import read_twin
+
+    settings = read_twin(Path(spec.where) if spec.where else None)
+    if actuator is not None:
+        settings = replace(settings, curve=actuator.curve, design=actuator.name)
+        if actuator.length_mm is not None:
+            settings = replace(settings, length_mm=actuator.length_mm)
+    return settings if seed is None else replace(settings, seed=seed)
+
+
+def bench_of(spec: Spec, calibration: Path | None = None, twin: TwinSettings | None = None) -> Bench:
     """What the bench may be asked for: its calibration file's, or what there is without one. Opens no port.
 
     A twin without a file has the calibration that a twin is made with, a replay the one of its run. InputError for a bench of metal with
@@ -60,7 +87,7 @@ def bench_of(spec: Spec, calibration: Path | None = None) -> Bench:
     if spec.kind == "twin":
         from benchlab.devices.twin.bench import twin_bench
 
-        return twin_bench()
+        return twin_bench(twin or twin_of(spec))
     if spec.kind == "replay":
         return _recorded_bench(Path(spec.where))
     return read_bench(None)
@@ -74,22 +101,16 @@ def bench_doubts(spec: Spec, bench: Bench) -> list[str]:
 
 
 def open_bench(
-    text: str,
-    bench: Bench | None = None,
-    *,
-    fast: bool = False,
-    seed: int | None = None,
-    curve: tuple[FloatArray, FloatArray] | None = None,
+    text: str, bench: Bench | None = None, *, fast: bool = False, twin: TwinSettings | None = None
 ) -> Device:
     """Open the bench that `--bench` names, disarmed. bench: its calibration, `bench_of` where None.
 
-    fast: in virtual time; UsageError for a serial bench, which has only the real one. seed, curve (pressure in MPa, angle in
-    degrees): of a twin, in place of its file's. Raises BenchError where the bench does not answer, with the ports that there are.
+    fast: in virtual time; UsageError for a serial bench, which has only the real one. twin: what a twin is made from, `twin_of` where
+    None. Raises BenchError where the bench does not answer, with the ports that there are.
     """
     spec = spec_of(text)
-    bench = bench or bench_of(spec)
-    if spec.kind != "twin" and (seed is not None or curve is not None):
-        raise UsageError(f"--seed and a curve are a twin's, not those of {spec}", hint="leave them out")
+    twin = twin or twin_of(spec)
+    bench = bench or bench_of(spec, None, twin)
     if spec.kind == "serial":
         if fast:
             raise UsageError("--fast is virtual time, which a real bench does not have", hint="leave --fast out")
@@ -103,14 +124,9 @@ def open_bench(
     if spec.kind == "replay":
         return _replay(Path(spec.where))
     from benchlab.devices.twin.twin import Twin
-    from benchlab.io.twin_file import read_twin
 
-    settings = read_twin(Path(spec.where) if spec.where else None)
-    if seed is not None:
-        settings = replace(settings, seed=seed)
-    if curve is not None:
-        settings = settings.with_curve(*curve)
-    return Twin(settings, bench)
+    assert twin is not None
+    return Twin(twin, bench)
 
 
 def _replay(path: Path) -> Device:

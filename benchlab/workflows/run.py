@@ -66,8 +66,7 @@ def drive(prepared: Prepared, stop: Stop, on_tick: Callable[[Tick], None] | None
 
 def open_prepared(prepared: Prepared) -> Device:
     """The bench of a prepared run, open and disarmed."""
-    curve = prepared.curve if prepared.spec.kind == "twin" else None
-    return open_bench(str(prepared.spec), prepared.bench, fast=prepared.fast, seed=prepared.settings.seed, curve=curve)
+    return open_bench(str(prepared.spec), prepared.bench, fast=prepared.fast, twin=prepared.twin)
 
 
 def _executed(

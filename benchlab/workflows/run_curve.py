@@ -1,27 +1,36 @@
-"""The response curve of a design for a run: simulated, and kept for the next run of this process."""
+"""The actuator on the bench: its response curve from a file, or of a design, simulated and kept for the next run of this process."""
 
 from __future__ import annotations
 
 import functools
+from pathlib import Path
 
-import numpy as np
 from threadpoolctl import threadpool_limits
 
 from benchlab.actuator import ShellDesign
 from benchlab.errors import InputError
 from benchlab.io.layup_file import DEFAULT_LAYUP, read_layup
+from benchlab.io.twin_file import read_curve
 from benchlab.simulation.actuator_response import actuator_response
-from benchlab.units import FloatArray
+from benchlab.twin.curve import ResponseCurve
+from benchlab.workflows.open_bench import Actuator
 
-PRESSURES_MPa = tuple(round(0.0175 * i, 4) for i in range(1, 21))
+PRESSURES_MPa = tuple(round(0.0175 * i, 4) for i in range(21))
 """Up to the paper's limit."""
 
 
-@functools.cache
-def simulated_curve(design: ShellDesign) -> tuple[FloatArray, FloatArray]:
-    """Pressures (MPa) and angles (degrees), (P,) each, from 0 MPa to 0.35 MPa, free to bend, of the shipped material.
+def actuator_of(design: ShellDesign | None, curve: Path | None) -> Actuator | None:
+    """The actuator of --design or --curve; None where neither is given. Raises UsageError and InputError."""
+    if curve is not None:
+        return Actuator(read_curve(curve), curve.stem)
+    return None if design is None else Actuator(simulated_curve(design), design.name, design.length_mm)
 
-    InputError where the design has no stable state at the last pressure.
+
+@functools.cache
+def simulated_curve(design: ShellDesign) -> ResponseCurve:
+    """A design of the shipped material, free to bend, from 0 to 0.35 MPa.
+
+    InputError where it has no stable state at the last pressure.
     """
     with threadpool_limits(1):
         found = actuator_response(design, read_layup(DEFAULT_LAYUP), PRESSURES_MPa, blocked=False)
@@ -31,4 +40,11 @@ def simulated_curve(design: ShellDesign) -> tuple[FloatArray, FloatArray]:
             f"{design.name} has no stable state above {last:g} MPa, and a run may go to {PRESSURES_MPa[-1]:g} MPa",
             hint="take another design, or give its curve with --curve",
         )
-    return np.concatenate([[0.0], found.pressure_MPa]), np.concatenate([[0.0], found.angle_deg])
+    columns = found.columns()
+    return ResponseCurve(
+        found.pressure_MPa,
+        found.angle_deg,
+        columns["volume_mL"],
+        columns["axial_stretch"],
+        f"{design.name}, simulated with material {DEFAULT_LAYUP}",
+    )

@@ -29,11 +29,11 @@ def header_of(prepared: Prepared, about: dict[str, Any]) -> dict[str, Any]:
         "bench": asdict(prepared.bench),
         "device": about,
         "control": None if prepared.control is None else asdict(prepared.control),
-        "curve": None if prepared.curve is None else dict(zip(("pressure_MPa", "angle_deg"), prepared.curve)),
+        "curve": None if prepared.curve is None else asdict(prepared.curve),
         "guards": asdict(prepared.limits),
         "clock": "virtual" if prepared.fast else "real",
         "pause_limit_s": settings.pause_limit_s,
-        "seed": settings.seed,
+        "seed": None if prepared.twin is None else prepared.twin.seed,
         "warnings": list(prepared.warnings),
         "provenance": made_by("numpy", "scipy", "serial"),
     }

@@ -12,8 +12,6 @@ from dataclasses import asdict, dataclass
 from datetime import datetime
 from pathlib import Path
 
-import numpy as np
-
 from benchlab.actuator import ShellDesign
 from benchlab.bench import Bench
 from benchlab.control.controller import Controller, controller_of
@@ -21,8 +19,10 @@ from benchlab.errors import InputError, UsageError
 from benchlab.protocol.plan import Control, Plan
 from benchlab.runner.guards.bend import expected_along, least_expected_deg
 from benchlab.runner.guards.limits import Limits
-from benchlab.units import FloatArray
-from benchlab.workflows.open_bench import Spec, bench_doubts, bench_of, spec_of
+from benchlab.twin.curve import ResponseCurve
+from benchlab.twin.settings import TwinSettings
+from benchlab.workflows.open_bench import Spec, bench_doubts, bench_of, spec_of, twin_of
+from benchlab.workflows.run_curve import actuator_of
 
 REAL_RATES_HZ = (10.0, 500.0)
 """Of a real or emulated bench: slower and its silence limit vents it, faster and the line cannot answer."""
@@ -31,8 +31,6 @@ BYTES_A_TICK, ROOM_BYTES = 600, 20_000_000
 """Of journal and results together, as an upper bound; and what is kept free beside them."""
 
 LONGEST_NAME = 200
-
-Curve = tuple[FloatArray, FloatArray]
 
 
 @dataclass(frozen=True)
@@ -57,7 +55,8 @@ class RunSettings:
 
 @dataclass(frozen=True)
 class Prepared:
-    """A run that may begin. text, sha256: of the protocol. control, controller: None in open loop. curve: pressure (MPa), angle (deg)."""
+    """A run that may begin. text, sha256: of the protocol. control, controller: None in open loop. curve: of the actuator, None where
+    nobody knows it; twin: None for another bench."""
 
     settings: RunSettings
     spec: Spec
@@ -67,7 +66,8 @@ class Prepared:
     sha256: str
     source: str
     limits: Limits
-    curve: Curve | None
+    curve: ResponseCurve | None
+    twin: TwinSettings | None
     control: Control | None
     controller: Controller | None
     stem: Path
@@ -81,7 +81,9 @@ class Prepared:
     @property
     def expected_deg(self) -> Callable[[float], float]:
         """The angle that a pressure should give, by the response curve, or the least that any actuator gives."""
-        return least_expected_deg if self.curve is None else expected_along(*self.curve)
+        return (
+            least_expected_deg if self.curve is None else expected_along(self.curve.pressure_MPa, self.curve.angle_deg)
+        )
 
     @property
     def suffixes(self) -> tuple[str, ...]:
@@ -101,16 +103,19 @@ def prepare(protocol: str, settings: RunSettings) -> Prepared:
 
     spec = _checked_spec(settings)
     limits = Limits.of(settings.guards)
-    bench = bench_of(spec, settings.calibration)
+    actuator = actuator_of(settings.design, settings.curve)
+    twin = twin_of(spec, settings.seed, actuator)
+    bench = bench_of(spec, settings.calibration, twin)
     plan, text, source = read_plan(protocol, settings)
     check_limits(plan, bench)
     _check_rate(plan, spec)
-    curve = _curve(settings)
+    curve = actuator.curve if actuator is not None else None if twin is None else twin.curve
     control, warnings = _control(plan, bench, settings)
     controller = None
     if control is not None:
         top_MPa = min(plan.limit_MPa, bench.ceiling_MPa)
-        controller = controller_of(**asdict(control), ceiling_MPa=top_MPa, curve=curve)
+        known = None if curve is None else (curve.pressure_MPa, curve.angle_deg)
+        controller = controller_of(**asdict(control), ceiling_MPa=top_MPa, curve=known)
     stem = _stem(source, settings)
     check_room(stem, plan)
     return Prepared(
@@ -123,6 +128,7 @@ def prepare(protocol: str, settings: RunSettings) -> Prepared:
         source=source,
         limits=limits,
         curve=curve,
+        twin=twin,
         control=control,
         controller=controller,
         stem=stem,
@@ -182,21 +188,6 @@ def _check_rate(plan: Plan, spec: Spec) -> None:
         raise InputError(
             f"the plan's rate is {plan.rate_Hz:g} Hz, and {spec} takes {low:g} to {high:g} Hz", hint="give --rate-Hz"
         )
-
-
-def _curve(settings: RunSettings) -> Curve | None:
-    """The response curve that --curve or --design says, to 0.35 MPa."""
-    if settings.curve is not None:
-        from benchlab.io.response_file import read_response_curves
-
-        curves = read_response_curves(settings.curve)
-        known = np.isfinite(curves.angle_deg)
-        return curves.pressure_MPa[known], curves.angle_deg[known]
-    if settings.design is not None:
-        from benchlab.workflows.run_curve import simulated_curve
-
-        return simulated_curve(settings.design)
-    return None
 
 
 def _control(plan: Plan, bench: Bench, settings: RunSettings) -> tuple[Control | None, list[str]]:

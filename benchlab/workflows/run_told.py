@@ -17,7 +17,7 @@ def planned(prepared: Prepared) -> dict[str, Any]:
     plan, bench = prepared.plan, prepared.bench
     guards = guards_of(bench, plan.rate_Hz, prepared.limits, prepared.expected_deg)
     known = plan.pressure_MPa[np.isfinite(plan.pressure_MPa)]
-    slew = np.abs(np.diff(plan.pressure_MPa)) * plan.rate_Hz
+    slews = [step.slew_MPa_per_s for step in plan.steps if step.slew_MPa_per_s is not None]
     found: dict[str, Any] = {
         "dry_run": True,
         "protocol": prepared.source,
@@ -30,7 +30,7 @@ def planned(prepared: Prepared) -> dict[str, Any]:
             "steps": len(plan.steps),
             "limit_MPa": plan.limit_MPa,
             "peak_MPa": known.max() if len(known) else None,
-            "slew_MPa_per_s": np.nanmax(slew) if np.isfinite(slew).any() else None,
+            "slew_MPa_per_s": max(slews, default=None),
             "closed_loop": plan.closed_loop,
         },
         "bench_spec": str(prepared.spec),
