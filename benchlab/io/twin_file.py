@@ -1,41 +1,149 @@
-"""Twin files: curve, effects, seed and camera of a simulated bench as strict YAML; and the twin that comes with benchlab."""
+"""Twin files: curve, effects, faults, seed and camera of a simulated bench as strict YAML; and the twin that comes with benchlab.
+
+    curve: tw9_slw10.h5          of `benchlab simulate`, beside this file; the shipped one where left out
+    seed: 7
+    effects:
+      friction: {half_width_deg_per_MPa: 6}     other parameters keep their typical values
+      softening: on                             with typical values
+      viscoelasticity: off
+    faults:
+      burst: {at_s: 3}
+    camera: {frames_per_s: 60}
+
+Effects that are not named are as in the twin that comes with benchlab. Names, parameters, bounds: benchlab/twin/effects.
+"""
 
 from __future__ import annotations
 
+import dataclasses
+import math
 from importlib.resources import as_file, files
 from pathlib import Path
+from typing import Annotated, Any
 
 import numpy as np
+from pydantic import BeforeValidator, Field, create_model
 
-from benchlab.errors import UsageError
+from benchlab.errors import InputError
 from benchlab.io.response_file import read_response_curves
+from benchlab.io.yaml_file import Document, read_document
 from benchlab.twin.curve import ResponseCurve
-from benchlab.twin.settings import TwinSettings
+from benchlab.twin.effects.catalogue import EFFECTS, FAULTS
+from benchlab.twin.effects.effect import Effect
+from benchlab.twin.settings import Camera, TwinSettings, default_effects
 
 SHIPPED_CURVE = "tw3_slw10"
+LENGTH_MM = 180.0
+
+
+def _switched(value: Any) -> Any:
+    """`on` is an effect with typical values, `off` is none."""
+    if value in ("on", "off"):
+        return {} if value == "on" else None
+    if not isinstance(value, dict):
+        raise ValueError("its parameters, `on` or `off`")
+    return value
+
+
+def _parameters(kind: type[Effect]) -> Any:
+    """The type of an effect's entry: its parameters within their bounds, or None where it is off."""
+    bounds: dict[str, Any] = {
+        each.name: (float, Field(default=each.default, ge=each.metadata["low"], le=each.metadata["high"]))
+        for each in dataclasses.fields(kind)
+    }
+    return Annotated[create_model(f"_{kind.__name__}", __base__=Document, **bounds) | None, BeforeValidator(_switched)]
+
+
+def _entries(names: list[str]) -> Any:
+    entries: dict[str, Any] = {name: (_parameters(EFFECTS[name]), None) for name in names}
+    return create_model("_Entries", __base__=Document, **entries)
+
+
+_Effects: Any = _entries([name for name in EFFECTS if name not in FAULTS])
+_Faults: Any = _entries(list(FAULTS))
+
+
+class _Camera(Document):
+    frames_per_s: float = Field(default=Camera.frames_per_s, ge=1, le=1000)
+    width_px: int = Field(default=Camera.width_px, ge=320, le=4096)
+    height_px: int = Field(default=Camera.height_px, ge=320, le=4096)
+    markers: int = Field(default=Camera.markers, ge=3, le=30)
+
+
+class _Twin(Document):
+    curve: str | None = None
+    design: str | None = None
+    length_mm: float | None = Field(default=None, ge=1, le=10_000)
+    seed: int = Field(default=1, ge=0, lt=2**63)
+    effects: _Effects = _Effects()
+    faults: _Faults = _Faults()
+    camera: _Camera = _Camera()
 
 
 def read_twin(path: Path | None) -> TwinSettings:
     """The twin of a file, or where None the one that comes with benchlab: tw 3 mm, slw 10 mm, typical effects, seed 1.
 
-    >>> sorted(read_twin(None).effects)[:2]
-    ['dac_steps', 'regulator_lag']
+    Raises UsageError and InputError, with the line of everything that is wrong.
+
+    >>> list(read_twin(None).effects)[:3]
+    ['dac_steps', 'regulator_lag', 'line_resistance']
     """
     if path is None:
         return TwinSettings(shipped_curve(), design=SHIPPED_CURVE)
-    raise UsageError("twin files are not read yet", file=path)
+    found = read_document(path, _Twin)
+    if found.curve is None:
+        curve, told = shipped_curve(), {"length_mm": LENGTH_MM}
+    else:
+        curve, told = _curve(path.parent / found.curve)
+    try:
+        return TwinSettings(
+            curve=curve,
+            effects=_effects(found),
+            seed=found.seed,
+            design=found.design or (SHIPPED_CURVE if found.curve is None else Path(found.curve).stem),
+            length_mm=_length_mm(found.length_mm, told.get("length_mm")),
+            camera=Camera(**found.camera.model_dump()),
+        )
+    except InputError as error:
+        raise InputError(error.what, file=path, where=error.where, hint=error.hint) from None
 
 
 def shipped_curve() -> ResponseCurve:
     """The curve of tw 3 mm, slw 10 mm in benchlab/curves: simulated, not measured."""
     with as_file(files("benchlab") / "curves" / f"{SHIPPED_CURVE}.csv") as file:
-        return read_curve(file, f"{SHIPPED_CURVE}, simulated (benchlab/curves)")
+        return dataclasses.replace(read_curve(file), source=f"{SHIPPED_CURVE}, simulated (benchlab/curves)")
 
 
-def read_curve(path: Path, source: str = "") -> ResponseCurve:
-    """A file of `benchlab simulate`, HDF5 or table. Rows without an angle are left out. UsageError or InputError."""
+def read_curve(path: Path) -> ResponseCurve:
+    """The curve in a file of `benchlab simulate`, HDF5 or table. Rows without an angle are left out. UsageError or InputError."""
+    return _curve(path)[0]
+
+
+def _curve(path: Path) -> tuple[ResponseCurve, dict[str, Any]]:
+    """The curve and the design that the file tells, empty where it is a table."""
     curves = read_response_curves(path)
     known = np.isfinite(curves.angle_deg)
     pressure, angle = curves.pressure_MPa[known], curves.angle_deg[known]
     volume, stretch = curves.volume_mL[known], curves.axial_stretch[known]
-    return ResponseCurve(pressure, angle, volume, stretch, source or str(path))
+    try:
+        return ResponseCurve(pressure, angle, volume, stretch, source=path.name), curves.about.get("design", {})
+    except InputError as error:
+        raise InputError(error.what, file=path, hint=error.hint) from None
+
+
+def _effects(found: Any) -> dict[str, Effect]:
+    on = dict(default_effects())
+    for part in (found.effects, found.faults):
+        for name in part.model_fields_set:
+            given = getattr(part, name)
+            on.pop(name, None)
+            if given is not None:
+                on[name] = EFFECTS[name](**given.model_dump())
+    return {name: on[name] for name in EFFECTS if name in on}
+
+
+def _length_mm(given: float | None, told: float | None) -> float:
+    if given is not None and told is not None and not math.isclose(given, told, rel_tol=1e-9):
+        hint = "leave length_mm out, or simulate the curve for this length"
+        raise InputError(f"length_mm is {given:g}, and the curve was simulated for {told:g}", hint=hint)
+    return given or told or LENGTH_MM

@@ -60,6 +60,7 @@ class Plant:
         now, places = self.now, self.places
         now.dt_s = dt_s
         now.time_s += dt_s
+        now.since_s += dt_s
         pressure = self.setpoint_MPa
         for stage in places["supply"]:
             pressure = stage(pressure, now)

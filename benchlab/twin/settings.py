@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from types import MappingProxyType
 from typing import Any, TypeVar
 
@@ -19,7 +19,7 @@ Kind = TypeVar("Kind", bound=Effect)
 
 def default_effects() -> Mapping[str, Effect]:
     """The effects of the twin that comes with benchlab, with their typical values (chosen, not measured)."""
-    return MappingProxyType({name: EFFECTS[name]() for name in DEFAULT if name in EFFECTS})
+    return MappingProxyType({name: EFFECTS[name]() for name in DEFAULT})
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ class TwinSettings:
         pressure, angle = np.asarray(pressure_MPa, dtype=float), np.asarray(angle_deg, dtype=float)
         volume = np.interp(pressure, self.curve.pressure_MPa, self.curve.volume_mL) if volume_mL is None else volume_mL
         curve = ResponseCurve(pressure, angle, np.asarray(volume, dtype=float), np.ones_like(pressure), source)
-        return TwinSettings(curve, self.effects, self.seed, source, self.length_mm, self.camera)
+        return replace(self, curve=curve, design=source)
 
     def as_json(self) -> dict[str, Any]:
         """All of it, in JSON's own types."""

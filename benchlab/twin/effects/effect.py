@@ -12,13 +12,16 @@ from benchlab.twin.curve import ResponseCurve
 
 
 class Now:
-    """The step that is being taken. dt_s: its length. time_s: its end. pressure_MPa: inside the actuator. shut: no air comes."""
+    """The step that is being taken. dt_s: its length. time_s: its end, since_s: since the first exchange of the run.
 
-    __slots__ = ("dt_s", "pressure_MPa", "shut", "time_s")
+    pressure_MPa: inside the actuator. shut: no air comes.
+    """
+
+    __slots__ = ("dt_s", "pressure_MPa", "shut", "since_s", "time_s")
 
     def __init__(self) -> None:
         self.dt_s = 0.0
-        self.time_s = 0.0
+        self.time_s = self.since_s = 0.0
         self.pressure_MPa = 0.0
         self.shut = False
 
