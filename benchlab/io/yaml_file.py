@@ -24,7 +24,7 @@ from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
 from benchlab.errors import InputError
 from benchlab.io.files import cannot_write, check_regular_file, written_whole
-from benchlab.io.yaml_units import in_unit_of_key
+from benchlab.io.yaml_units import in_unit_of_key, same_name
 
 MAX_BYTES = 1_000_000
 MAX_DEPTH = 32
@@ -58,7 +58,9 @@ def read_document_with_lines(path: Path, model: type[Model]) -> tuple[Model, dic
         return model.model_validate_json(json.dumps(data), strict=True), lines
     except ValidationError as error:
         known = _known_keys(model)
-        raise refused(path, [_one(dict(e), lines, known) for e in error.errors(include_url=False)]) from None
+        found = _told_once([dict(e) for e in error.errors(include_url=False)])
+        told = sorted((_one(e, lines, known) for e in found), key=lambda one: int(one[0].removeprefix("line ")))
+        raise refused(path, told) from None
 
 
 def write_document(path: Path, document: dict[str, Any], header_comment: str = "") -> None:
@@ -192,6 +194,19 @@ def refused(path: Path, found: Sequence[tuple[str, str, str]]) -> InputError:
     return InputError(f"{len(found)} things are wrong: " + "; ".join(shown), file=path, hint=None)
 
 
+def _told_once(errors: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Errors without the missing keys that stand there misspelt or in another unit: those are told as unknown keys."""
+    unknown = [error["loc"] for error in errors if error["type"] == "extra_forbidden"]
+    return [
+        error
+        for error in errors
+        if error["type"] != "missing"
+        or not any(
+            place[:-1] == error["loc"][:-1] and _like(str(place[-1]), {str(error["loc"][-1])}) for place in unknown
+        )
+    ]
+
+
 def _one(error: dict[str, Any], lines: dict[Place, int], known: set[str]) -> tuple[str, str, str]:
     """Line, what is wrong, and the remedy."""
     place: Place = ()
@@ -211,7 +226,7 @@ def _one(error: dict[str, Any], lines: dict[Place, int], known: set[str]) -> tup
         return line, f"{_name(place)} is {value}", "give a finite number"
     shown = json.dumps(value, ensure_ascii=False, default=str)
     shown = shown if len(shown) <= 60 else shown[:57] + "..."
-    wish = message.removeprefix("Input should be ").removeprefix("Value error, ")
+    wish = message.removeprefix("Input should be ").removeprefix("List should have ").removeprefix("Value error, ")
     return line, f"{_name(place)} is {shown}", f"give {wish}" if wish != message and "Value" not in message else wish
 
 
@@ -219,8 +234,12 @@ def _remedy(key: str, value: object, known: set[str]) -> str:
     """What to do about a key that is not known."""
     if wanted := in_unit_of_key(key, value, known):
         return f"write {wanted}"
-    close = difflib.get_close_matches(key, sorted(known), n=1)
-    return f"did you mean {close[0]}?" if close else "remove it"
+    close = _like(key, known)
+    return f"did you mean {' or '.join(close)}?" if close else "remove it"
+
+
+def _like(key: str, known: set[str]) -> list[str]:
+    return same_name(key, known) or difflib.get_close_matches(key, sorted(known), n=1)
 
 
 def _known_keys(model: type[BaseModel]) -> set[str]:

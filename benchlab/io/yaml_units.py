@@ -19,8 +19,8 @@ _PER = re.compile(r"\s*/\s*|_per_|\s+per\s+")
 
 
 def in_unit_of_key(key: str, value: object, known: Iterable[str]) -> str | None:
-    """`KEY: VALUE` as it has to be written, for a key or a value that has another unit than the known key of the same name or none at all;
-    None where that is not what is wrong.
+    """`KEY: VALUE` as it has to be written, where key or value wears another unit than the known key of the same name; None where that
+    is not what is wrong.
 
     >>> keys = ("to_MPa", "duration_s", "rate_MPa_per_s")
     >>> in_unit_of_key("to", "10 psi", keys), in_unit_of_key("to_kPa", 35, keys), in_unit_of_key("duration_s", "2 min", keys)
@@ -30,14 +30,24 @@ def in_unit_of_key(key: str, value: object, known: Iterable[str]) -> str | None:
     if parsed is None:
         return None
     number, written = parsed
-    for name in sorted(known):
-        stem, unit = _split(name)
-        own_stem, own_unit = _split(key)
-        if unit is None or own_stem.casefold() != stem.casefold():
+    stem, own_unit = _split(key)
+    for name in same_name(stem, known):
+        unit = _split(name)[1]
+        if name == key and not written:
             continue
-        if (factor := _factor(written or own_unit or unit, unit)) is not None and (written or key != name):
+        if unit is not None and (factor := _factor(written or own_unit or "", unit)) is not None:
             return f"{name}: {number * factor:.3g}" if factor != 1 else f"{name}: {number:g}"
     return None
+
+
+def same_name(key: str, known: Iterable[str]) -> list[str]:
+    """The known keys that are this one with another unit, or with a unit where it has none.
+
+    >>> same_name("to", ("to_MPa", "to_deg", "times")), same_name("hold_ms", ("hold_s", "rest_s"))
+    (['to_MPa', 'to_deg'], ['hold_s'])
+    """
+    stem = _split(key)[0].casefold()
+    return [name for name in sorted(known) if (parts := _split(name))[1] is not None and parts[0].casefold() == stem]
 
 
 def _number(value: object) -> tuple[float, str] | None:
