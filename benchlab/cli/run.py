@@ -72,6 +72,7 @@ def run(protocol: str, dry_run: bool, quiet: bool, as_json: bool, **options: Any
       NAME.h5       the run file (HDF5, NXdata): pressure asked for and measured, angle, lateness, events, all settings
       NAME.csv      the same, a row a tick
       NAME.png      pressure and angle against time
+      NAME.truth.csv  of a twin: what was really there
 
     \b
     Exit codes: 0 completed, 130 interrupted and vented, 5 stopped by the bench or for safety, 3 refused or disk full.

@@ -12,7 +12,7 @@ from benchlab.workflows.run_prepare import Prepared
 
 
 def written(prepared: Prepared, driven: Driven) -> dict[str, Any]:
-    """Write run file, table, picture and, if asked for, the twin's film from the journal; what `--json` prints.
+    """Write run file, table, picture and, of a twin, its truth and, if asked for, its film from the journal; what `--json` prints.
 
     The journal stays whatever happens. What cannot be made of it is a warning, and exit code 3 where the run itself ended well.
     """
@@ -41,6 +41,12 @@ def written(prepared: Prepared, driven: Driven) -> dict[str, Any]:
 
 def _results(prepared: Prepared, driven: Driven) -> list[str]:
     made = list(write_results(driven.journal)["outputs"])
+    if driven.truth is not None:
+        from benchlab.io.truth_table import write_truth_csv
+
+        path = prepared.path(".truth.csv")
+        write_truth_csv(path, driven.truth)
+        made.append(str(path))
     if prepared.settings.video:
         from benchlab.workflows.twin_film import write_twin_film
 

@@ -88,7 +88,8 @@ class Prepared:
     @property
     def suffixes(self) -> tuple[str, ...]:
         """Of the files that will be written."""
-        return (".journal", ".h5", ".csv", ".png", *((".mp4",) if self.settings.video else ()))
+        truth = (".truth.csv",) if self.spec.kind == "twin" else ()
+        return (".journal", ".h5", ".csv", ".png", *truth, *((".mp4",) if self.settings.video else ()))
 
     def path(self, suffix: str) -> Path:
         return self.stem.with_name(self.stem.name + suffix)
