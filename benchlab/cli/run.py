@@ -135,7 +135,8 @@ def _tell(found: dict[str, Any]) -> None:
     done = f"{found['ticks']} of {found['ticks_planned']} ticks in {found['time_s']:.1f} s"
     late = found["late_ms"]
     lateness = f", late by {late['p50']:.2g} ms (median) to {late['max']:.2g} ms" if late else ", in virtual time"
-    click.echo(f"{printable(found['reason'])}: {printable(found['words'])}", err=True)
+    who = "" if found["reason"] == "completed" else "benchlab: "
+    click.echo(f"{who}{printable(found['reason'])}: {printable(found['words'])}", err=True)
     click.echo(f"  {done}{lateness}; {_vented(found)}", err=True)
     for warning in found["warnings"]:
         click.echo(f"  warning: {printable(warning)}", err=True)

@@ -1,18 +1,19 @@
-"""What is seen of a run while it goes on: two lines on a terminal, a plain line now and then elsewhere. All on standard error.
+"""What is seen of a run while it goes on: three lines on a terminal, a plain line now and then elsewhere. All on standard error.
 
 Drawn from a thread of its own, ten times a second at most, so that a terminal that is slow, stopped or gone holds up nothing.
 """
 
 from __future__ import annotations
 
+import io
 import math
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from typing import Any
 
 from benchlab.cli.progress import PLAIN_EVERY_S, fancy
+from benchlab.devices.interface import Reading, Status
 from benchlab.errors import printable
 from benchlab.protocol.plan import Plan
 from benchlab.runner.stop import Stop
@@ -63,9 +64,9 @@ def shown(screen: Screen, title: str, quiet: bool) -> Iterator[None]:
     if quiet:
         yield
         return
-    over = threading.Event()
-    draw = _draw_lines if fancy() else _print_now_and_then
-    thread = threading.Thread(target=draw, args=(screen, printable(title), over), daemon=True, name="benchlab screen")
+    over, title = threading.Event(), printable(title)
+    work = _drawing(screen, title, over) if fancy() else _printing(screen, title, over)
+    thread = threading.Thread(target=work, daemon=True, name="benchlab screen")
     thread.start()
     try:
         yield
@@ -74,37 +75,43 @@ def shown(screen: Screen, title: str, quiet: bool) -> Iterator[None]:
         thread.join(2.0)
 
 
-def _draw_lines(screen: Screen, title: str, over: threading.Event) -> None:
-    from rich.console import Console
+def _drawing(screen: Screen, title: str, over: threading.Event) -> Callable[[], None]:
+    """What a thread does on a terminal. All is imported and drawn once before it starts, as both take milliseconds."""
+    from rich.console import Console, Group
     from rich.live import Live
-
-    with suppress(OSError), Live(console=Console(stderr=True), auto_refresh=False, transient=True) as live:
-        while not over.wait(DRAW_EVERY_S):
-            if screen.tick is not None:
-                live.update(_lines(screen, screen.tick, title), refresh=True)
-
-
-def _lines(screen: Screen, tick: Tick, title: str) -> Any:
-    from rich.console import Group
     from rich.progress_bar import ProgressBar
     from rich.table import Table
     from rich.text import Text
 
-    first = Table.grid(padding=(0, 1), expand=True)
-    first.add_column(no_wrap=True)
-    first.add_column(ratio=1, min_width=10)
-    first.add_column(no_wrap=True, overflow="ellipsis")
-    bar = ProgressBar(total=max(1, len(screen.plan.time_s) - 1), completed=tick.index)
-    first.add_row(Text(title, "bold"), bar, Text(screen.place(tick)))
-    hint = Text(f"   {screen.hint()}", "bold yellow" if screen.stop.paused else "dim")
-    second = Text.assemble(screen.values(tick), hint, no_wrap=True, overflow="ellipsis")
-    return Group(first, second)
+    def lines(tick: Tick) -> Group:
+        first = Table.grid(padding=(0, 1), expand=True)
+        first.add_column(no_wrap=True)
+        first.add_column(ratio=1, min_width=10)
+        first.add_column(no_wrap=True, overflow="ellipsis")
+        bar = ProgressBar(total=max(1, len(screen.plan.time_s) - 1), completed=tick.index)
+        first.add_row(Text(title, "bold"), bar, Text(screen.place(tick)))
+        values = Text(screen.values(tick), no_wrap=True, overflow="ellipsis")
+        hint = Text(screen.hint(), "bold yellow" if screen.stop.paused else "dim", no_wrap=True, overflow="ellipsis")
+        return Group(first, values, hint)
+
+    def draw() -> None:
+        with suppress(OSError), Live(console=Console(stderr=True), auto_refresh=False, transient=True) as live:
+            while not over.wait(DRAW_EVERY_S):
+                if screen.tick is not None:
+                    live.update(lines(screen.tick), refresh=True)
+
+    at_rest = Reading(math.nan, math.nan, -1, math.nan, Status(0))
+    Console(file=io.StringIO(), force_terminal=True).print(lines(Tick(0, 0.0, 0.0, 0.0, at_rest, 0)))
+    return draw
 
 
-def _print_now_and_then(screen: Screen, title: str, over: threading.Event) -> None:
-    with suppress(OSError):
-        while not over.wait(PLAIN_EVERY_S):
-            if screen.tick is not None:
-                print(
-                    f"{title}: {screen.place(screen.tick)}: {screen.values(screen.tick)}", file=sys.stderr, flush=True
-                )
+def _printing(screen: Screen, title: str, over: threading.Event) -> Callable[[], None]:
+    """What a thread does elsewhere: a plain line now and then."""
+
+    def say() -> None:
+        with suppress(OSError):
+            while not over.wait(PLAIN_EVERY_S):
+                if (tick := screen.tick) is not None:
+                    print(f"{title}: {screen.place(tick)}: {screen.values(tick)}", file=sys.stderr, flush=True)
+
+    return say

@@ -81,7 +81,7 @@ class Loop:
                 return cause
             for event in here:
                 self.journal.event(event.kind, tick=index, time_s=self.clock.now_s(), text=event.text)
-        return self._wait(plan.duration_s + self.shift_s) or Cause("completed", f"all {self.ticks} ticks of the plan")
+        return self._wait(plan.duration_s + self.shift_s) or Cause("completed", "to the end of the plan")
 
     def write(self) -> None:
         """What was measured last goes into the journal, if it is not there."""
