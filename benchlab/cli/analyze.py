@@ -71,7 +71,8 @@ NUMBER = Finite()
 @click.option(
     "--sync",
     metavar="SECONDS|onset",
-    help="Video time at which the pressure record or ramp starts, or `onset` of motion. [default: 0 for --pressure, onset for --ramp]",
+    help="Video time at which the pressure record or ramp starts, or `onset` of motion. [default: 0 for --pressure, or by the "
+    "camera trigger of a run; onset for --ramp]",
 )
 @click.option("--overlay", is_flag=True, help="Also write a video with markers, circle and angle drawn in.")
 @click.option("--stream", type=click.IntRange(0), default=0, show_default=True, help="Which video stream of the file.")

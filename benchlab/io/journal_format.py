@@ -78,7 +78,7 @@ def read_header_line(path: Path, data: bytes) -> tuple[dict[str, Any], int, int]
     end = data.find(b"\n", found.end(), MAX_HEADER)
     body = data[found.end() : end - 1]
     crc = int(found[2], 16)
-    if end < 0 or zlib.crc32(body) != crc:
+    if end < 0 or data[end - 1 : end] != b"}" or zlib.crc32(body) != crc:
         what = "the head of the journal is " + ("cut" if end < 0 else "damaged: its checksum does not fit")
         raise InputError(what, file=path, where="first line", hint="copy it again; without its head it says nothing")
     try:

@@ -101,6 +101,12 @@ def read_document(reader: Reader, name: str, schema: Schema, form: type = dict) 
     return content
 
 
+def schema_of(path: Path) -> str:
+    """What the root of an HDF5 file says that it is, "" where it says nothing. Raises as `open_hdf5`."""
+    with open_hdf5(path) as reader:
+        return str(reader.attribute("schema", ""))
+
+
 def read_provenance_of(path: Path, schema: Schema) -> dict[str, Any] | None:
     """The provenance of a file of this schema, read alone and quickly; its key `partial` tells one that was not finished.
 

@@ -10,7 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from benchlab.errors import InputError, UsageError
+from benchlab.io.drive_file import SCHEMA as DRIVE
 from benchlab.io.hdf5 import is_hdf5
+from benchlab.io.nexus import schema_of
+from benchlab.io.pressure_driven import read_driven_pressure
 from benchlab.io.pressure_group import read_pressure_group
 from benchlab.io.pressure_table import read_pressure_table
 from benchlab.vision.picture import FloatArray
@@ -25,13 +28,15 @@ class PressureRecord:
     """Gauge pressure against the record's own time.
 
     time_s: (M,) never going back. pressure_MPa: (M,) NaN where the record has no number.
-    source: the file. warnings: what was left out or assumed in reading it.
+    source: the file. warnings: what was left out or assumed in reading it. trigger_s: the record's time at which the camera was
+    triggered; None where it does not tell.
     """
 
     time_s: FloatArray
     pressure_MPa: FloatArray
     source: str
     warnings: tuple[str, ...] = ()
+    trigger_s: float | None = None
 
     def at(self, times_s: ArrayLike, offset_s: float = 0.0) -> FloatArray:
         """(T,) pressure in MPa at the video times `times_s` (T,), linear between the record's rows.
@@ -88,11 +93,16 @@ def ramp(text: str) -> Ramp:
 
 
 def read_pressure(path: Path) -> PressureRecord:
-    """The pressure record in a text table (units in its header) or in an HDF5 file with time_s and pressure_MPa.
+    """The pressure record in a text table (units in its header), in a drive file, or in an HDF5 file with time_s and pressure_MPa.
 
     Raises UsageError or InputError, with the line, for what cannot be read in exactly one way.
     """
-    if is_hdf5(path):
+    trigger_s = None
+    if is_hdf5(path) and schema_of(path) == DRIVE.name:
+        run = read_driven_pressure(path)
+        time_s, pressure, trigger_s, warnings = run.time_s, run.pressure_MPa, run.trigger_s, run.warnings
+        word, lines = "row", list(range(1, len(time_s) + 1))
+    elif is_hdf5(path):
         word, (lines, time_s, pressure, warnings) = "row", read_pressure_group(path)
     else:
         word, (lines, time_s, pressure, warnings) = "line", read_pressure_table(path)
@@ -110,7 +120,7 @@ def read_pressure(path: Path) -> PressureRecord:
     if repeated := int((np.diff(time_s) == 0).sum()):
         warnings.append(f"{_rows(repeated)} repeat{'s' if repeated == 1 else ''} the time of the row before")
     _check_range(path, pressure, lines, word)
-    return PressureRecord(time_s, pressure, str(path), tuple(warnings))
+    return PressureRecord(time_s, pressure, str(path), tuple(warnings), trigger_s)
 
 
 def _rows(count: int) -> str:

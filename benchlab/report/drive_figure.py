@@ -52,7 +52,8 @@ def draw_drive_figure(journal: Journal) -> Figure:
         plot_angle(lower, samples)
         upper.tick_params(labelbottom=False)
         upper.set_xlabel("")
-    upper.margins(y=0.2)
+    low, high = upper.get_ylim()
+    upper.set_ylim(low, high + 0.3 * (high - low))  # room for the words of marks
     for ax in figure.axes:
         plot_marks(ax, journal, words=ax is upper)
     if loop:

@@ -77,7 +77,7 @@ def measure(source: Path, settings: AnalyzeSettings, progress: Progress | None =
     )
     series = _with_pressure(series, pressure or ramp, settings)
     if pressure is not None:
-        warnings += pressure.warnings
+        warnings += [*pressure.warnings, *_synchronised(pressure, settings)]
     warnings += doubts(series, scale, settings, tracks.rival)
     missing = 1 - series.measured.mean()
     if missing > settings.max_missing:
@@ -223,6 +223,14 @@ def _check_moves(series: CurvatureSeries) -> None:
         )
 
 
+def _synchronised(record: PressureRecord, settings: AnalyzeSettings) -> list[str]:
+    """Where the record itself tells when the film began, that it was believed."""
+    if record.trigger_s is None or settings.sync is not None or settings.sync_onset:
+        return []
+    at = f"{record.trigger_s:.3f} s of {Path(record.source).name}, when the camera was triggered"
+    return [f"the film is taken to begin at {at}; --sync SECONDS or onset says otherwise"]
+
+
 def _with_pressure(
     series: CurvatureSeries, record: PressureRecord | Ramp | None, settings: AnalyzeSettings
 ) -> CurvatureSeries:
@@ -240,5 +248,5 @@ def _with_pressure(
     elif settings.sync_onset:
         start = find_onset(series.time_s, series.angle_rad) - find_onset(record.time_s, record.pressure_MPa)
     else:
-        start = 0.0
+        start = -(record.trigger_s or 0.0)
     return replace(series, pressure_MPa=record.at(series.time_s, -start))

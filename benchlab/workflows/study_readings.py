@@ -10,6 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from benchlab.io.angle_table import AngleTable, is_series, read_angle_table
+from benchlab.io.drive_file import SCHEMA as DRIVE
+from benchlab.io.drive_file import origin, read_drive_file, sensor_sd
+from benchlab.io.nexus import schema_of
 from benchlab.io.run_file import read_run_file
 from benchlab.io.study_values import CycleValue, nan_mean
 from benchlab.io.table import read_series_csv
@@ -49,7 +52,9 @@ class Readings:
 
 
 def read_run(path: Path, target: Target) -> Readings:
-    """The readings of a run file. Raises UsageError or InputError."""
+    """The readings of a run file, or of a drive file. Raises UsageError or InputError."""
+    if schema_of(path) == DRIVE.name:
+        return _of_drive(path, target)
     run = read_run_file(path)
     series = run.series
     warnings = [*run.warnings, *(["interrupted: not all of the recording was analysed"] if run.partial else [])]
@@ -57,6 +62,27 @@ def read_run(path: Path, target: Target) -> Readings:
         return _without(NO_PRESSURE, target, warnings)
     trace = Trace(series.pressure_MPa, np.degrees(series.angle_rad), np.degrees(series.angle_sd_rad), series.sure)
     return _of_trace(trace, series.flag, target, warnings)
+
+
+def _of_drive(path: Path, target: Target) -> Readings:
+    """The angle by the flex sensor over the pressure that was measured or, where none was, asked for."""
+    run = read_drive_file(path)
+    samples, stop = run.samples, run.stop or {"reason": "no record of its end"}
+    origin_told = origin(run.header)
+    warnings = [f"its numbers are not of a bench of metal: {origin_told}"] if origin_told else []
+    warnings += ["its angle is by the flex sensor, not from a film"]
+    if stop["reason"] != "completed":
+        warnings.append(f"the run was not completed: {stop['reason']}")
+    warnings += run.losses_told
+    angle, pressure = (np.asarray(samples[name], dtype=float) for name in ("angle_deg", "pressure_MPa"))
+    if not np.isfinite(angle).any():
+        return _without("no angle was measured: the flex sensor is not there, or not calibrated", target, warnings)
+    if not np.isfinite(pressure).any():
+        warnings.append("no pressure was measured: the pressure is what was asked for")
+        pressure = np.asarray(samples["command_MPa"], dtype=float)
+    known = np.isfinite(angle)
+    trace = Trace(pressure, angle, np.where(known, sensor_sd(run.header, "flex"), np.nan), known)
+    return _of_trace(trace, tuple("" if each else "no angle" for each in known), target, warnings)
 
 
 def read_table(path: Path, design: str, sample: str, target: Target) -> Readings:
