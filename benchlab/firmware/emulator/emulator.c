@@ -10,7 +10,7 @@
  *
  *     run T              let it go on until T (lockstep: time moves by this and the next alone)
  *     ask T1 T2 HEX      let it go on until T1, give it these bytes, and go on until it has answered, or T2
- *     dac lost|back      take the DAC off the bus          flex MV|auto, monitor MV|auto   hold a sensor
+ *     dac lost|back|skip take the DAC off the bus; for one command        flex MV|auto, monitor MV|auto   hold a sensor
  *     hang, deaf         the main loop hangs; with interrupts off             reset, power  as the button, as the plug
  *     memory CODE        what the DAC takes at power-on   state              nothing
  *
@@ -55,7 +55,7 @@ static uint8_t feed[1 << 17], said[1 << 17];
 static unsigned feed_at, feed_end, said_end, triggers;
 static avr_cycle_count_t next_feed, last_said;
 
-static struct { unsigned code, memory, here, selected, reading, index; uint8_t bytes[8]; } dac = {.here = 1, .memory = 0x800, .code = 0x800};
+static struct { unsigned code, memory, here, skip, selected, reading, index; uint8_t bytes[8]; } dac = {.here = 1, .memory = 0x800, .code = 0x800};
 static struct { double volts; avr_cycle_count_t at; } regulator;
 static struct { double offset_mV, gain, held_mV; } sensor[2];
 
@@ -114,6 +114,10 @@ static void on_twi(struct avr_irq_t *irq, uint32_t value, void *param)
     if (!dac.here)
         return;
     if (v.u.twi.msg & TWI_COND_START && (v.u.twi.addr & ~1) == 0x62 << 1) {
+        if (dac.skip) {
+            dac.skip = 0;
+            return;
+        }
         dac.selected = v.u.twi.addr;
         avr_raise_irq(to_twi, avr_twi_irq_msg(TWI_COND_ACK, dac.selected, 1));
     }
@@ -155,6 +159,8 @@ static void on_trigger(struct avr_irq_t *irq, uint32_t value, void *param)
     (void)param;
     if (value && !irq->value)
         note("trigger", ++triggers);
+    else if (!value && irq->value)
+        note("released", triggers);
 }
 
 static void on_byte(struct avr_irq_t *irq, uint32_t value, void *param)
@@ -306,8 +312,9 @@ static void obey(char *line, int lockstep)
         hear_hex(hex);
         run_until(strtoull(until, NULL, 10) * MHZ, 1);
     } else if (!strcmp(what, "dac")) {
-        dac.here = !strcmp(value, "back");
-        note(dac.here ? "back" : "lost", 0);
+        dac.skip = !strcmp(value, "skip");
+        dac.here = strcmp(value, "lost") != 0;
+        note(value, 0);
     } else if (!strcmp(what, "flex")) {
         hold(FLEX, value);
     } else if (!strcmp(what, "monitor")) {

@@ -11,7 +11,9 @@ from pathlib import Path
 import pytest
 
 from benchlab.bench import Bench
+from benchlab.devices import emulator
 from benchlab.devices.emulator import AVR, build
+from benchlab.devices.firmware import firmware_text
 from benchlab.devices.interface import Status
 from benchlab.devices.messages import ARM, SET, UNKNOWN_CODE, VENT, answer_of, arm_payload, set_payload
 from benchlab.devices.wire import Frame, Wire, encode
@@ -118,6 +120,14 @@ def test_vent_zeroes_and_latches(nano: Nano) -> None:
     assert nano.vent().code == 0
 
 
+def test_a_vent_ends_what_was_told_of_earlier_commands(nano: Nano) -> None:
+    nano.arm()
+    assert nano.set(2000).flags & Status.SLEWING
+    assert nano.vent().flags == 0
+    assert nano.set(2000).flags & REFUSED
+    assert nano.vent().flags == 0
+
+
 def test_silence_vents_after_200_ms_and_latches(nano: Nano) -> None:
     nano.arm()
     nano.hold(1500, 0.1)
@@ -153,6 +163,19 @@ def test_a_hung_main_loop_is_vented_and_reset(nano: Nano) -> None:
     nano.tell("reset")
     nano.run(0.2)
     assert nano.status().flags == REBOOTED  # the watchdog is told once
+
+
+def test_the_watchdog_is_told_where_a_bootloader_hides_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Optiboot clears the register with the reset's cause before the firmware sees it."""
+    hidden = firmware_text(BENCH).replace("reset_cause = MCUSR;", "reset_cause = 0;")
+    monkeypatch.setattr(emulator, "firmware_text", lambda bench: hidden)
+    nano = Nano(tmp_path / "events.txt")
+    nano.arm()
+    assert nano.said.cause == "not told by the bootloader"
+    nano.tell("hang")
+    nano.run(0.5)
+    assert nano.status().flags == WATCHDOG | REBOOTED
+    nano.emulator.close()
 
 
 def test_a_hang_with_interrupts_off_is_reset(nano: Nano) -> None:
@@ -201,6 +224,14 @@ def test_a_dac_that_is_lost_latches_and_is_zeroed_when_it_is_back(nano: Nano) ->
     answer = nano.status()
     assert answer.flags & DAC_LOST and answer.code == 0  # latched until it is armed again
     assert nano.arm().flags == ARMED
+
+
+def test_one_missing_acknowledgement_is_borne(nano: Nano) -> None:
+    nano.arm()
+    nano.hold(1500, 0.1)
+    nano.tell("dac skip")
+    answer = nano.hold(1500, 0.05)
+    assert answer.flags == ARMED and answer.code == 1500
 
 
 def test_a_dac_that_lost_its_code_is_told_again(nano: Nano) -> None:
@@ -304,6 +335,8 @@ def test_a_trigger_is_one_pulse_of_20_ms(nano: Nano) -> None:
     nano.hold(100, 0.1)
     nano.set(100, trigger=True)
     assert nano.tell("state").triggers == 2
+    (up, *_), (down, *_) = nano.events("trigger", "released")[:2]
+    assert 0.019 < down - up < 0.021
 
 
 def test_its_clock_counts_microseconds(nano: Nano) -> None:
