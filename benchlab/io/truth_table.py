@@ -1,22 +1,19 @@
-"""The truth of a twin as a table: what was really there at each exchange of a simulated run, a row each."""
+"""What was really there while a twin was driven, as a table: NAME.truth.csv. Simulated, and the first line says so."""
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 
-from benchlab.io.files import cannot_write, written_whole
+from benchlab.io.files import written_whole
 from benchlab.twin.truth import COLUMNS, Truth
+
+SUFFIX = ".truth.csv"
+FIRST_LINE = "# simulated, not measured: the inside of benchlab's digital twin at each exchange"
 
 
 def write_truth_csv(path: Path, truth: Truth) -> None:
-    """Write the columns of a Truth, whole or not at all: nothing in it was measured. InputError where the disk refuses."""
-    with written_whole(path) as temporary:
-        try:
-            with temporary.open("w", encoding="utf-8", newline="") as file:
-                writer = csv.writer(file, lineterminator="\n")
-                writer.writerow(COLUMNS)
-                for row in zip(*(getattr(truth, name) for name in COLUMNS), strict=True):
-                    writer.writerow([f"{value:.7g}" for value in row])
-        except OSError as error:
-            raise cannot_write(error, path) from error
+    """Write the columns of Truth, a row an exchange, whole or not at all. InputError where the disk refuses."""
+    table = zip(*(getattr(truth, name).tolist() for name in COLUMNS))
+    with written_whole(path) as temporary, temporary.open("w", encoding="utf-8", newline="\n") as file:
+        file.write(f"{FIRST_LINE}\n{','.join(COLUMNS)}\n")
+        file.writelines(",".join(f"{value:.9g}" for value in row) + "\n" for row in table)

@@ -3,26 +3,22 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import av
 import numpy as np
-from av.error import FFmpegError
 
 from benchlab.actuator import ShellDesign
 from benchlab.errors import InputError, UsageError
 from benchlab.io.files import reason_of, written_whole
-from benchlab.io.video_writer import VideoWriter
 from benchlab.vision.picture import FloatArray
-from benchlab.vision.synthetic import Scene, draw_frames
+from benchlab.vision.synthetic import Scene
+from benchlab.workflows.drawn_film import Progress, write_drawn_film
 from benchlab.workflows.sample_data_readme import readme
 from benchlab.workflows.sample_force import force_files, force_rows
 from benchlab.workflows.sample_study import SIMULATED, STUDY, sample_study, write_simulated
 from benchlab.workflows.sample_tensile import tensile_text
-
-Progress = Callable[[int, int | None], None]
 
 PUBLISHED_DEG: dict[tuple[int, int], tuple[float, float]] = {
     (3, 5): (110.2, 1.9),
@@ -39,8 +35,6 @@ FRAMES = 90
 PEAK_PRESSURE = 0.35
 RAMP_START_S, RAMP_S = 0.25, 2.5
 CONCAVITY = 0.35
-CRF = 18
-TITLE = "drawn by benchlab, not filmed"
 
 
 @dataclass(frozen=True)
@@ -142,19 +136,8 @@ def response(share: FloatArray) -> FloatArray:
 
 
 def write_clip(path: Path, clip: SampleClip, rng: np.random.Generator, progress: Progress | None = None) -> None:
-    """Draw and encode one clip. On one thread, so that one encoder version gives one file."""
-    scene = clip.scene
-    with written_whole(path) as temporary:
-        encoded = temporary.with_name(f"{temporary.stem}-untitled.mp4")
-        try:
-            with VideoWriter(encoded, scene.width, scene.height, fps=FPS, crf=CRF, preset="medium", threads=1) as film:
-                for done, planes in enumerate(draw_frames(scene, clip.angles_rad(), rng), start=1):
-                    film.write(planes)
-                    if progress:
-                        progress(done, FRAMES)
-            _copy_with_title(encoded, temporary)
-        finally:
-            encoded.unlink(missing_ok=True)
+    """Draw and encode one clip."""
+    write_drawn_film(path, clip.scene, clip.angles_rad(), rng, FPS, "`benchlab sample-data`", progress)
 
 
 def truth_rows(clips: Iterable[SampleClip]) -> list[dict[str, object]]:
@@ -213,23 +196,6 @@ def _scene(rng: np.random.Generator, length_px: float, index: int) -> Scene:
 def _shifted(progress: Progress | None, before: int, total: int) -> Progress | None:
     """Progress of one clip told as progress of all."""
     return None if progress is None else lambda done, _: progress(before + done, total)
-
-
-def _copy_with_title(source: Path, target: Path) -> None:
-    """The same film, its index in front, with a title and a comment that say what it is."""
-    try:
-        with (
-            av.open(f"file:{source.absolute()}") as film,
-            av.open(f"file:{target.absolute()}", "w", options={"movflags": "+faststart"}) as copy,
-        ):
-            copy.metadata.update(title=TITLE, comment=f"{TITLE}: `benchlab sample-data`")
-            stream = copy.add_stream_from_template(film.streams.video[0])
-            for packet in film.demux(video=0):
-                if packet.dts is not None:
-                    packet.stream = stream
-                    copy.mux(packet)
-    except (FFmpegError, OSError) as error:
-        raise InputError(f"writing failed: {error}", file=target) from error
 
 
 def _write_csv(path: Path, rows: list[dict[str, object]]) -> None:

@@ -15,7 +15,7 @@ from benchlab.io.recording import open_recording
 from benchlab.io.sweep_file import read_sweep_file
 from benchlab.simulation.actuator_response import Fixture
 from benchlab.vision.synthetic import Scene, marker_truth
-from benchlab.workflows import sample_data, sample_study
+from benchlab.workflows import drawn_film, sample_data, sample_study
 from benchlab.workflows.sample_data import PUBLISHED_DEG, make_sample_data, sample_clips, series_rows, truth_rows
 from benchlab.workflows.sample_force import force_rows
 from benchlab.workflows.simulated import Conditions
@@ -172,7 +172,7 @@ def test_the_repository_holds_what_seed_1_stands_for() -> None:
     assert (FOLDER / "truth_series.csv").stat().st_size < 300e3
     for clip in clips:
         with av.open(str(FOLDER / clip.file)) as film:
-            assert film.metadata["title"] == sample_data.TITLE
+            assert film.metadata["title"] == drawn_film.TITLE
             stream = film.streams.video[0]
             assert (stream.width, stream.height, stream.frames) == (1920, 1080, 90)
 
