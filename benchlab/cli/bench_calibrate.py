@@ -165,6 +165,8 @@ def _show_readings(readings: list[GaugeReading]) -> None:
 
 def _tell(found: dict[str, Any]) -> None:
     """The lines with their intervals, warnings and the file on standard error."""
+    from benchlab.io.bench_file import SIMULATED
+
     for name in ("regulator", "monitor"):
         fit = found[name]
         if fit is None:
@@ -192,7 +194,8 @@ def _tell(found: dict[str, Any]) -> None:
         _say(f"warning: {warning}")
     for path in found["outputs"]:
         _say(f"wrote {path}")
-    _say(f"write the firmware anew with `benchlab bench firmware --calibration {found['outputs'][0]} --out DIR`")
+    if SIMULATED not in found["gauge"]:
+        _say(f"write the firmware anew with `benchlab bench firmware --calibration {found['outputs'][0]} --out DIR`")
 
 
 def _say(text: str) -> None:

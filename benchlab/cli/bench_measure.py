@@ -11,6 +11,7 @@ from benchlab.bench import Bench, Line
 from benchlab.cli.bench_answers import Answers, ask_unit, ask_volts, pressure_of
 from benchlab.errors import InputError, UsageError, printable
 from benchlab.io.bench_file import SIMULATED, GaugeReading
+from benchlab.twin.lines import SUPPLY_V
 from benchlab.workflows.bench_hold import ThreadHold, VirtualHold
 from benchlab.workflows.bench_readings import Level, levels_MPa, take_readings, twin_gauge
 from benchlab.workflows.open_bench import open_bench, spec_of
@@ -29,6 +30,8 @@ def measure(text: str, gauge: str, options: dict[str, Any]) -> tuple[list[GaugeR
     simulated = gauge == TWIN_GAUGE
     if simulated and kind != "twin":
         raise UsageError("--gauge twin is the simulated gauge of a twin", hint=f"say which gauge is at {text}")
+    if simulated and options["supply_V"] is not None:
+        raise UsageError("--supply-V is measured, and a twin's is known", hint="leave --supply-V out")
     # What is not calibrated yet is driven as a bench that nobody calibrated.
     nominal = Bench(options["name"] or kind, Line(options["full_scale_MPa"] / 5, 0.0), limit_MPa=options["limit_MPa"])
     top = options["max_MPa"] or nominal.ceiling_MPa
@@ -40,7 +43,7 @@ def measure(text: str, gauge: str, options: dict[str, Any]) -> tuple[list[GaugeR
     with closing(open_bench(text, nominal)) as device:
         levels = levels_MPa(min(top, device.about().get("ceiling_MPa", top)), options["points"])
         if simulated:
-            supply_V = options["supply_V"] or nominal.supply_V
+            supply_V = SUPPLY_V
             with VirtualHold(device) as hold:
                 readings = take_readings(hold, levels, nominal, supply_V, twin_gauge(device), settle_s, _say)
             return readings, supply_V, f"{SIMULATED} gauge of the twin"

@@ -113,9 +113,9 @@ def _mean(values: list[float]) -> float:
 
 
 def twin_gauge(device: Device) -> Gauge:
-    """The simulated gauge of a twin: the pressure that is truly in it, without an error of its own. TypeError for other devices."""
+    """The simulated gauge of a twin: what is truly at its regulator, without an error of its own. TypeError for other devices."""
     from benchlab.devices.twin.twin import Twin
 
     if not isinstance(device, Twin):
         raise TypeError("only a twin knows its truth")
-    return lambda level: float(device.truth.pressure_MPa[-1])
+    return lambda level: float(device.truth.regulator_MPa[-1])

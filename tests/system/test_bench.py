@@ -6,6 +6,7 @@ import csv
 import json
 import os
 import pty
+import re
 import select
 import signal
 import subprocess
@@ -322,6 +323,28 @@ def test_readings_from_a_table_need_no_bench(benchlab, tmp_path: Path) -> None:
     assert read_bench(out) == bench
 
 
+def test_a_twin_s_gauge_is_simulated_and_its_calibration_is_for_no_bench_of_metal(benchlab, tmp_path: Path) -> None:
+    out = tmp_path / "twin.yaml"
+    done = benchlab("bench", "calibrate", "--bench", "twin", "--gauge", "twin", "--out", out, "--json")
+    assert done.code == 0 and done.json["gauge"] == "simulated gauge of the twin"
+    gain, monitor = (done.json[line]["gain_MPa_per_V"] for line in ("regulator", "monitor"))
+    assert gain["low"] < 0.096 < gain["high"] and monitor["value"] == pytest.approx(0.12, rel=2e-3)
+    assert done.json["readings"] == 15 and len(read_bench_file(out).readings) == 15
+    with SmallNano() as nano:
+        done = benchlab("bench", "vent", "--bench", f"serial:{nano.port}", "--calibration", out)
+    assert done.code == 3 and "no pressure of a bench of metal" in done.err and not nano.vents
+    done = benchlab("bench", "monitor", "--bench", "twin", "--calibration", out, "--seconds", "0.2", "--json")
+    assert done.code == 0 and abs(done.json["pressure_MPa"]["mean"]) < 0.005
+
+
+def test_the_bench_file_of_the_guide_reads(tmp_path: Path) -> None:
+    guide = (Path(__file__).parents[2] / "docs" / "bench.md").read_text(encoding="utf-8")
+    (text,) = re.findall(r"```yaml\n(.*?)```", guide, re.DOTALL)
+    (tmp_path / "bench.yaml").write_text(text, encoding="utf-8")
+    file = read_bench_file(tmp_path / "bench.yaml")
+    assert file.flex_from == "run 12 with video" and len(file.readings) == 1
+
+
 @pytest.mark.parametrize(
     ("arguments", "named"),
     [
@@ -334,6 +357,8 @@ def test_readings_from_a_table_need_no_bench(benchlab, tmp_path: Path) -> None:
         (("--gauge", "a", "--bench", "twin", "--limit-MPa", "35"), "--limit-MPa"),
         (("--gauge", "a", "--bench", "twin", "--date", "2026-05-31"), "--date"),
         (("--gauge", "twin", "--bench", "emulated"), "simulated gauge"),
+        (("--gauge", "twin", "--bench", "twin", "--supply-V", "4.9"), "--supply-V"),
+        (("--gauge", "a", "--bench", "twin", "--full-scale-MPa", "70"), "--full-scale-MPa"),
         (("--gauge", "a", "--bench", "replay:x"), "replay"),
         (("--gauge", "a", "--bench", "twin", "--out", "bench.txt"), ".yaml"),
     ],
