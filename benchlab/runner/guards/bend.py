@@ -16,34 +16,47 @@ from benchlab.runner.tick import Tick
 
 
 class BendGuard:
-    """The angle against the least that this pressure must bend the actuator by. Without a response curve, 10° at 0.2 MPa are expected."""
+    """The angle against the least that this pressure must bend the actuator by; without a response curve, 10° at 0.2 MPa are expected. And
+    against the most that may be left of it once nothing is asked for."""
 
     name = "bending"
-    WORTH_DEG = 10.0
+    WORTH_DEG, LEFT_SHARE = 10.0, 0.5
     REST_MPa = 0.02
 
     def __init__(self, limits: Limits, expected_deg: Callable[[float], float]) -> None:
         self.limits, self.expected_deg = limits, expected_deg
-        self.lag, self.timer, self.at_rest = Lag(limits.lag_s), Timer(), Timer()
-        self.rest_deg = math.nan
+        self.lag = Lag(limits.lag_s)
+        self.idle, self.bent, self.resting = Timer(), Timer(), Timer()
+        self.rest_deg, self.peak_deg = math.nan, 0.0
 
     def check(self, tick: Tick) -> Cause | None:
-        angle = tick.angle_deg
+        angle, time_s = tick.angle_deg, tick.time_s
         if math.isnan(angle):
             return None
-        slow = min(self.lag.after(tick.time_s, tick.command_MPa), tick.command_MPa)
-        resting = self.at_rest.count(tick.time_s, slow <= self.REST_MPa) >= self.limits.bend_s
-        if math.isnan(self.rest_deg) or (resting and slow <= self.REST_MPa):
+        if math.isnan(self.rest_deg):
             self.rest_deg = angle
-        expected, moved = self.expected_deg(slow), angle - self.rest_deg
+        lagging = self.lag.after(time_s, tick.command_MPa)
+        surely = min(lagging, tick.command_MPa)
+        moved, expected = angle - self.rest_deg, self.expected_deg(surely)
+        self.peak_deg = max(self.peak_deg, moved)
         idle = expected >= self.WORTH_DEG and moved < self.limits.bend_share * expected
-        if self.timer.count(tick.time_s, idle) < self.limits.bend_s:
-            return None
-        words = f"{1e3 * tick.command_MPa:.0f} kPa asked for and the angle is {moved:.1f}° from rest for {self.timer.for_s:.2g} s, where"
-        return Cause(
-            "not following",
-            f"{words} {self.limits.bend_share * expected:.1f}° are the least: burst, tube off, or the flex sensor came off",
-        )
+        if self.idle.count(time_s, idle) >= self.limits.bend_s:
+            return self._idle(tick, moved, expected)
+        rest = lagging <= self.REST_MPa and tick.command_MPa <= self.REST_MPa
+        bent = rest and self.peak_deg >= self.WORTH_DEG and moved > self.LEFT_SHARE * self.peak_deg
+        if self.bent.count(time_s, bent) >= self.limits.bend_s:
+            words = f"vented for {self.bent.for_s:.2g} s and the angle is still {moved:.1f}° of {self.peak_deg:.1f}°"
+            return Cause(
+                "not following", f"{words}: exhaust blocked, tube kinked or a valve shut; PRESSURE MAY BE LEFT INSIDE"
+            )
+        if self.resting.count(time_s, rest and not bent) >= self.limits.bend_s and rest:
+            self.rest_deg, self.peak_deg = angle, 0.0
+        return None
+
+    def _idle(self, tick: Tick, moved: float, expected: float) -> Cause:
+        words = f"{1e3 * tick.command_MPa:.0f} kPa asked for and the angle is {moved:.1f}° from rest for {self.idle.for_s:.2g} s"
+        least = f"where {self.limits.bend_share * expected:.1f}° are the least"
+        return Cause("not following", f"{words}, {least}: burst, tube off, or the flex sensor came off")
 
 
 def least_expected_deg(pressure_MPa: float) -> float:

@@ -129,6 +129,24 @@ def test_a_tube_that_is_off_from_the_start_is_seen_in_the_ramp() -> None:
     assert end.reason == "not following" and end.time_s < 3.0
 
 
+def test_air_that_stays_inside_after_venting_is_told() -> None:
+    def shut(n: int, fields: Fields) -> None:
+        if n >= 250:
+            fields["flex_V"] = 1.9 + 1e-3 * math.sin(n)
+
+    end = run(shut, np.concatenate([ramp(4.0), np.zeros(500)]))
+    assert end.reason == "not following" and "PRESSURE MAY BE LEFT INSIDE" in end.cause.words
+    assert 5.5 < end.time_s < 7.0
+
+
+def test_an_angle_that_creeps_back_slowly_is_let_pass() -> None:
+    def slow(n: int, fields: Fields) -> None:
+        if 400 <= n < 1200:
+            fields["flex_V"] = 1.0 + 0.9 * (0.3 * math.exp(-(n - 400) / 1000)) + 1e-3 * math.sin(n)
+
+    assert run(slow, np.concatenate([ramp(4.0), np.zeros(800), ramp(4.0)])).reason == "completed"
+
+
 def test_an_offset_of_the_flex_sensor_is_no_bend() -> None:
     shifted = setting("flex_V", lambda n, volts: 1.6 + 1e-3 * math.sin(n))
     assert run(shifted, bench=NO_MONITOR).reason == "not following"
