@@ -82,7 +82,8 @@ class Replay:
     @staticmethod
     def _check(tick: int, field: str, recorded: float, asked: float) -> None:
         if not abs(recorded - asked) <= SAME_MPA:
-            what = f"tick {tick} differs from the recording: {field} was {recorded!r}, {asked!r} is asked for"
+            was, now = (str(value) if isinstance(value, bool) else f"{value:.9g}" for value in (recorded, asked))
+            what = f"tick {tick} differs from the recording: {field} was {was}, {now} is asked for"
             raise BenchError(
                 what, where="replay", hint="a replay takes the protocol, the rate and the gains of its run"
             )
