@@ -56,7 +56,7 @@ class SmallNano:
             if select.select([self.master], [], [], 0.01)[0]:
                 for frame in decoder.feed(os.read(self.master, 4096)):
                     if frame.command not in self.deaf_to:
-                        self._answer(frame)
+                        self.answer(frame)
             if self.armed and time.monotonic() - self.heard_s > SILENCE_S:
                 self._vent("silence")
                 self.silent = True
@@ -65,7 +65,7 @@ class SmallNano:
         self.armed, self.code = False, 0
         self.vents.append(why)
 
-    def _answer(self, frame: Frame) -> None:
+    def answer(self, frame: Frame) -> None:
         refused = Status(0)
         self.heard_s = time.monotonic()
         if frame.command in (HELLO, VENT):

@@ -1,0 +1,168 @@
+"""Paths on which pressure could be left on, or be more than was meant, tried on a Nano at a pty: none does."""
+
+from __future__ import annotations
+
+import os
+import pty
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from benchlab.io.bench_file import read_bench
+from benchlab.io.journal import read_journal
+from tests.system.small_nano import SILENCE_S, SmallNano
+
+CALIBRATION = """name: left
+date: '{date}'
+gauge: test
+supply_V: {supply_V}
+regulator: {{gain_MPa_per_V: 0.0965, offset_MPa: -0.001}}
+monitor: {{gain_MPa_per_V: 0.12, offset_MPa: -0.12}}
+"""
+PROTOCOL = """title: hold
+limit_MPa: 0.15
+segments:
+  - ramp: {to_MPa: 0.1, duration_s: 0.2}
+  - hold: {duration_s: 0.5}
+"""
+HELD_MPA = 0.1
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> tuple[Path, Path]:
+    bench, protocol = tmp_path / "bench.yaml", tmp_path / "hold.yaml"
+    bench.write_text(CALIBRATION.format(date="2026-05-31", supply_V=4.9))
+    protocol.write_text(PROTOCOL)
+    return bench, protocol
+
+
+@pytest.fixture
+def nano(files: tuple[Path, Path]) -> Iterator[SmallNano]:
+    with SmallNano(read_bench(files[0]).ceiling_code) as nano:
+        yield nano
+
+
+def words(nano: SmallNano, bench: Path, protocol: Path) -> list[str]:
+    where = ["--bench", f"serial:{nano.port}", "--calibration", str(bench), "--name", "r", "--out", str(bench.parent)]
+    return ["run", str(protocol), *where]
+
+
+def stop_of(folder: Path) -> dict:
+    stop = read_journal(folder / "r.journal").stop
+    assert stop is not None
+    return stop
+
+
+def test_a_run_gives_what_was_asked_for_and_ends_vented(benchlab, nano: SmallNano, files, tmp_path: Path) -> None:
+    done = benchlab(*words(nano, *files))
+    assert done.code == 0, done.err
+    assert nano.highest_code == read_bench(files[0]).code(HELD_MPA)
+    assert nano.code == 0 and not nano.armed and "silence" not in nano.vents
+    assert stop_of(tmp_path)["vented"]
+
+
+def test_a_firmware_that_gives_less_is_told_before_anything_is_armed(
+    benchlab, nano: SmallNano, files, tmp_path
+) -> None:
+    nano.ceiling_code = read_bench(files[0]).code(HELD_MPA) - 5
+    done = benchlab(*words(nano, *files))
+    assert done.code == 5 and "asks for 0.1 MPa" in done.err and "benchlab bench firmware" in done.err
+    assert nano.highest_code == 0 and not list(tmp_path.glob("r.*"))
+
+
+def test_a_supply_that_has_risen_is_refused_before_anything_is_armed(
+    benchlab, nano: SmallNano, files, tmp_path
+) -> None:
+    files[0].write_text(CALIBRATION.format(date="2026-05-31", supply_V=4.6))  # it is 4.9
+    done = benchlab(*words(nano, *files))
+    assert done.code == 5 and "supply were 4.9" in done.err and "measure the supply" in done.err
+    assert nano.highest_code == 0 and not list(tmp_path.glob("r.*"))
+
+
+def test_a_bench_that_is_not_empty_is_not_armed(benchlab, nano: SmallNano, files, monkeypatch) -> None:
+    from benchlab.workflows import bench_zero
+
+    monkeypatch.setattr(bench_zero, "WAIT_S", 0.2)
+    nano.sticks_MPa = 0.05
+    done = benchlab(*words(nano, *files))
+    assert done.code == 5 and "shows 50" in done.err and nano.highest_code == 0
+
+
+def test_an_old_calibration_is_told_with_the_run(benchlab, nano: SmallNano, files) -> None:
+    files[0].write_text(CALIBRATION.format(date="2020-05-31", supply_V=4.9))
+    done = benchlab(*words(nano, *files))
+    assert done.code == 0 and "calibrate it at least once a year" in done.err
+
+
+def test_a_vent_that_nobody_confirms_is_told_loudly(benchlab, nano: SmallNano, files, tmp_path: Path) -> None:
+    from benchlab.devices.messages import SET, VENT
+
+    answer = nano.answer
+
+    def deaf_once_armed(frame) -> None:
+        if frame.command == SET and nano.armed:
+            nano.deaf_to = (VENT,)
+        answer(frame)
+
+    nano.answer = deaf_once_armed
+    done = benchlab(*words(nano, *files))
+    assert done.code == 5 and "NOT CONFIRMED VENTED" in done.err and "by hand" in done.err
+    assert not stop_of(tmp_path)["vented"]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL, signal.SIGSTOP])
+def test_every_signal_ends_vented(nano: SmallNano, files, tmp_path: Path, number: signal.Signals) -> None:
+    files[1].write_text(PROTOCOL.replace("0.5", "30"))
+    running = subprocess.Popen([sys.executable, "-m", "benchlab", *words(nano, *files)], stderr=subprocess.DEVNULL)
+    try:
+        until = time.monotonic() + 10
+        while nano.pressure_MPa < 0.99 * HELD_MPA:
+            assert time.monotonic() < until and running.poll() is None
+            time.sleep(0.01)
+        running.send_signal(number)
+        sent = time.monotonic()
+        while nano.armed and time.monotonic() - sent < 2:
+            time.sleep(0.005)
+        assert time.monotonic() - sent < SILENCE_S + 0.05 and nano.code == 0
+        by_firmware = number in (signal.SIGKILL, signal.SIGSTOP)
+        assert (nano.vents[-1] == "silence") == by_firmware
+        if not by_firmware:
+            assert running.wait(10) == 130 and stop_of(tmp_path)["vented"]
+        else:
+            assert not read_journal(tmp_path / "r.journal").complete
+    finally:
+        running.kill()
+        running.wait()
+
+
+def test_a_closed_terminal_ends_vented(nano: SmallNano, files, tmp_path: Path) -> None:
+    files[1].write_text(PROTOCOL.replace("0.5", "30"))
+    pid, terminal = pty.fork()
+    if pid == 0:
+        os.execv(sys.executable, [sys.executable, "-m", "benchlab", *words(nano, *files)])
+    until = time.monotonic() + 10
+    while nano.pressure_MPa < 0.99 * HELD_MPA and time.monotonic() < until:
+        time.sleep(0.01)
+    assert nano.armed
+    os.close(terminal)
+    while nano.armed and time.monotonic() < until:
+        time.sleep(0.005)
+    assert nano.code == 0 and nano.vents[-1] == "vent"
+    os.waitpid(pid, 0)
+    assert stop_of(tmp_path)["reason"] == "hung up"
+
+
+def test_ctrl_c_while_the_port_does_not_answer_leaves_at_once_or_soon(nano: SmallNano, files) -> None:
+    nano.deaf_to = (1, 2, 3, 4, 5)
+    running = subprocess.Popen(
+        [sys.executable, "-m", "benchlab", *words(nano, *files)], stderr=subprocess.PIPE, text=True
+    )
+    time.sleep(1.5)
+    running.send_signal(signal.SIGINT)
+    assert running.wait(8) in (5, 130)
+    assert nano.highest_code == 0
