@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ORANGE, GREEN = "#D55E00", "#009E73"
+MEASURED: dict[str, Any] = {"color": BLUE, "linewidth": 1.6, "zorder": 2}
+ASKED: dict[str, Any] = {"color": "#222222", "linewidth": 0.7, "zorder": 2.2}
+
 MAX_DRAWN = 20_000
 """Samples up to which each is drawn; of longer runs, every second, third, … one."""
 
@@ -26,7 +29,7 @@ MAX_MARKS = 30
 """Marks up to which each gets a line and its words."""
 
 _WIDTH, _WIDTH_OF_TWO, _HEIGHT = 8.0, 12.0, 5.6
-_LEFT, _RIGHT, _BETWEEN, _TOP, _FOOT, _GAP = 0.75, 0.25, 0.8, 0.85, 0.55, 0.25
+_LEFT, _RIGHT, _BETWEEN, _TOP, _FOOT, _GAP = 0.75, 0.25, 0.8, 0.95, 0.55, 0.28
 
 
 def draw_drive_figure(journal: Journal) -> Figure:
@@ -64,9 +67,9 @@ def draw_drive_figure(journal: Journal) -> Figure:
 
 def plot_pressure(ax: Axes, samples: NDArray[np.void]) -> None:
     """What was asked for and what was measured, in MPa over s."""
-    ax.plot(samples["time_s"], samples["command_MPa"], color=GREY, linewidth=1.1, label="asked for", zorder=2)
+    ax.plot(samples["time_s"], samples["command_MPa"], label="asked for", **ASKED)
     if np.isfinite(samples["pressure_MPa"]).any():
-        ax.plot(samples["time_s"], samples["pressure_MPa"], color=BLUE, linewidth=1.2, label="measured", zorder=2.2)
+        ax.plot(samples["time_s"], samples["pressure_MPa"], label="measured", **MEASURED)
     else:
         ax.plot([], [], " ", label="not measured")
     dress(ax, "time (s)", "pressure (MPa)")
@@ -76,42 +79,50 @@ def plot_pressure(ax: Axes, samples: NDArray[np.void]) -> None:
 def plot_angle(ax: Axes, samples: NDArray[np.void]) -> None:
     """The angle by the flex sensor, and the one asked for in closed loop, in degrees over s."""
     if np.isfinite(samples["reference_deg"]).any():
-        ax.plot(samples["time_s"], samples["reference_deg"], color=GREY, linewidth=1.1, label="asked for", zorder=2)
-    ax.plot(samples["time_s"], samples["angle_deg"], color=BLUE, linewidth=1.2, label="flex sensor", zorder=2.2)
+        ax.plot(samples["time_s"], samples["reference_deg"], label="asked for", **ASKED)
+    ax.plot(samples["time_s"], samples["angle_deg"], label="by the flex sensor", **MEASURED)
     dress(ax, "time (s)", "bending angle θ (°)")
     _legend(ax)
 
 
 def plot_loop(ax: Axes, samples: NDArray[np.void], journal: Journal) -> None:
-    """Angle over measured pressure, in the order of the samples; the first cycle apart from those after it."""
+    """Angle over measured pressure, in the order of the samples: the first cycle, those after it, and what is in none."""
     cycle = cycles_of(journal)[:: 1 + len(journal.samples) // MAX_DRAWN]
     x, y = samples["pressure_MPa"], samples["angle_deg"]
-    several, last = bool(cycle.max(initial=0) > 1), int(cycle.max(initial=0))
-    first = cycle <= 1 if several else np.ones(len(x), dtype=bool)
-    if several:
-        label = "cycle 2" if last == 2 else f"cycles 2 to {last}"
-        ax.plot(x, np.where(first, np.nan, y), color=BLUE, linewidth=0.9, label=label, zorder=2)
-    style: dict[str, Any] = {"color": ORANGE if several else BLUE, "linewidth": 1.2, "zorder": 2.2}
-    ax.plot(x, np.where(first, y, np.nan), label="cycle 1", **style)
+    last = int(cycle.max(initial=0))
+    parts = [
+        (cycle == 0, "in no cycle", "#aaaaaa", 0.9),
+        (cycle > 1, "cycle 2" if last == 2 else f"cycles 2 to {last}", BLUE, 0.9),
+        (cycle == 1, "cycle 1", ORANGE if last > 1 else BLUE, 1.2),
+    ]
+    for here, label, colour, width in parts:
+        if here.any():
+            ax.plot(x, np.where(here, y, np.nan), color=colour, linewidth=width, label=label)
     dress(ax, "pressure measured (MPa)", "bending angle θ (°)")
-    if several:
+    if len(ax.lines) > 1:
         _legend(ax)
 
 
 def plot_marks(ax: Axes, journal: Journal, words: bool) -> None:
     """A line at each mark, pause and trigger of the camera, and at the end of a run that was not completed."""
-    told = [event for event in journal.events if event["kind"] in ("mark", "trigger", "pause", "resume")]
-    for event in told[:MAX_MARKS]:
-        _line(ax, event, str(event.get("text") or event["kind"]) if words else "", GREY)
+    near_s = 0.02 * float(np.ptp(journal.samples["time_s"])) if len(journal.samples) else 0.0
+    groups: list[tuple[float, list[str]]] = []
+    for event in journal.events:
+        if event["kind"] not in ("mark", "trigger", "pause", "resume") or event.get("time_s") is None:
+            continue
+        text = "camera" if event["kind"] == "trigger" else str(event.get("text") or event["kind"])
+        if groups and event["time_s"] - groups[-1][0] < near_s:
+            groups[-1][1].append(text)
+        else:
+            groups.append((float(event["time_s"]), [text]))
+    for time_s, texts in groups[:MAX_MARKS]:
+        _line(ax, time_s, ", ".join(texts) if words else "", GREY)
     stop = journal.stop
-    if stop is not None and stop.get("reason") != "completed":
-        _line(ax, stop, str(stop.get("reason", "stopped")) if words else "", ORANGE)
+    if stop is not None and stop.get("reason") != "completed" and stop.get("time_s") is not None:
+        _line(ax, float(stop["time_s"]), str(stop.get("reason", "stopped")) if words else "", ORANGE)
 
 
-def _line(ax: Axes, event: dict[str, Any], words: str, colour: str) -> None:
-    time_s = event.get("time_s")
-    if time_s is None:
-        return
+def _line(ax: Axes, time_s: float, words: str, colour: str) -> None:
     ax.axvline(time_s, color=colour, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1)
     if words:
         place: dict[str, Any] = {"xy": (time_s, 1.0), "xycoords": ("data", "axes fraction"), "xytext": (2, -2)}
@@ -120,7 +131,9 @@ def _line(ax: Axes, event: dict[str, Any], words: str, colour: str) -> None:
 
 
 def _legend(ax: Axes) -> None:
-    ax.legend(loc="best", fontsize=8, frameon=True, framealpha=0.85, edgecolor="none")
+    """Above the panel, at its right, where nothing is drawn."""
+    place: dict[str, Any] = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.1, "ncols": 3}
+    ax.legend(fontsize=8, frameon=False, borderpad=0.1, **place)
 
 
 def _write_words(figure: Figure, journal: Journal, width: float, height: float) -> None:
