@@ -27,7 +27,7 @@ def test_it_is_never_silent_while_the_caller_waits() -> None:
         time.sleep(3 * SILENCE_S)  # somebody reads a gauge
         assert device.armed and device.pressure_MPa > 0
         hold.check()
-    assert device.longest_silence_s < SILENCE_S / 2
+    assert device.longest_silence_s < SILENCE_S
     assert not device.armed and device.vents == 1
 
 
