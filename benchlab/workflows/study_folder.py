@@ -9,6 +9,7 @@ from pathlib import Path
 
 from benchlab.errors import BenchlabError, InputError, UsageError
 from benchlab.io.delimited import open_table
+from benchlab.io.drive_file import SCHEMA as DRIVE
 from benchlab.io.force_file import SCHEMA as FORCE
 from benchlab.io.hdf5 import open_hdf5
 from benchlab.io.response_file import SCHEMA as RESPONSE
@@ -22,6 +23,9 @@ from benchlab.workflows.report_outputs import NUMBERS, PAGE
 from benchlab.workflows.study_values import RECORDINGS
 
 MOST_FILES = 20_000
+
+TRUTH = ".truth.csv"
+"""Ends the name of the table that a run on a twin leaves of what was really there."""
 
 WRITTEN = frozenset([RECORDINGS, "tables", "figures"])
 """Folders that a report writes beside its page."""
@@ -54,6 +58,8 @@ def look_into(folder: Path) -> Contents:
         suffix, stem = path.suffix.lower(), path.stem.casefold()
         if ".overlay." in path.name:
             found.unused.append((path, "drawn into by an analysis"))
+        elif path.name.endswith(TRUTH):
+            found.unused.append((path, "the truth of a twin, which nobody measured"))
         elif path.is_dir() or suffix in VIDEOS:
             found.recordings.append(path)
         elif suffix in RUN_SUFFIXES | TABLE_SUFFIXES and (video := videos.get(stem)):
@@ -98,7 +104,7 @@ def _sort_hdf5(path: Path, found: Contents) -> None:
     except BenchlabError as error:
         found.unused.append((path, error.what))
         return
-    if schema == RUN.name:
+    if schema in (RUN.name, DRIVE.name):
         found.recordings.append(path)
     elif schema in (SWEEP.name, RESPONSE.name):
         found.simulated.append(path)
