@@ -91,14 +91,17 @@ def run(protocol: str, dry_run: bool, quiet: bool, as_json: bool, **options: Any
         found = planned(prepared)
         _tell_plan(found)
     else:
-        found = _drive(prepared, quiet)
+        found, bug = _drive(prepared, quiet)
         _tell(found)
+        if bug is not None:
+            raise bug
     if as_json:
         click.echo(json.dumps(found, indent=2, allow_nan=False))
     return int(found.get("exit_code", 0))
 
 
-def _drive(prepared: Any, quiet: bool) -> dict[str, Any]:
+def _drive(prepared: Any, quiet: bool) -> tuple[dict[str, Any], BaseException | None]:
+    """What the run came to, and the bug that ended it, if one did."""
     from benchlab.cli.run_keys import have_keys, keys_to
     from benchlab.cli.run_screen import Screen, shown
     from benchlab.runner.stop import Stop
@@ -109,7 +112,8 @@ def _drive(prepared: Any, quiet: bool) -> dict[str, Any]:
     screen = Screen(prepared.plan, stop, keys)
     with keys_to(stop, keys), shown(screen, f"{prepared.plan.title} on {prepared.spec}", quiet):
         driven = drive(prepared, stop, None if quiet else screen.on_tick)
-    return written(prepared, driven)
+    end = driven.end
+    return written(prepared, driven), end.cause.error if end.reason == "bug" else None
 
 
 def _tell_plan(found: dict[str, Any]) -> None:
