@@ -79,11 +79,11 @@ def flex(
     lack = (
         f"; lack of fit F{tuple(fit['df'])} = {fit['F']:.3g}, p {fit['p']:.2g}" if fit else "; no level was held twice"
     )
-    click.echo(f"  straight? bow {found['bow_deg']['value']:.2f}°, p {_p(found['bow_p'])}{lack}", err=True)
+    click.echo(f"  straight? bow {found['bow_deg']['value']:+.2f}°, p {_p(found['bow_p'])}{lack}", err=True)
     if found["hysteresis_deg"] is not None:
         most = found["hysteresis_max_deg"]
         click.echo(
-            f"  falling less rising: {found['hysteresis_deg']:.2f}° on the average, {most:.2f}° at most", err=True
+            f"  falling less rising: {found['hysteresis_deg']:+.2f}° on the average, {most:.2f}° at most", err=True
         )
     _tell_files(found, as_json)
 

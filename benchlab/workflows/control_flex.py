@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from benchlab.bench import Line
 from benchlab.control.flex import FlexCalibration, calibrate_flex
 from benchlab.errors import UsageError
 from benchlab.io.angle_series import read_angle_series
@@ -46,7 +47,7 @@ def calibrate_flex_sensor(
     )
     origin = f"{source.name} (sha256 {sha256(source)[:16]}) and angles of {angle.name} (sha256 {sha256(angle)[:16]})"
     origin += "; simulated" if run.simulated else ""
-    bench = replace(file.bench, flex=found.bench_line)
+    bench = replace(file.bench, flex=_short(found.bench_line))
     figure = draw_flex_figure(
         found, f"Flex sensor of {bench.name}", f"{run.bench_words}; run {source.name}, angles {angle.name}"
     )
@@ -72,6 +73,11 @@ def _starts(run: DrivenRun, angle: Path, told: float | None) -> tuple[float, str
             hint="give --angle-starts-s, the time of the run at the film's first frame",
         )
     return float(triggers[0]), "the run's trigger of the camera"
+
+
+def _short(line: Line) -> Line:
+    """To seven digits, which is finer than any volt."""
+    return Line(*(float(f"{value:.7g}") for value in (line.gain, line.offset, line.sd)))
 
 
 def _warnings(found: FlexCalibration) -> list[str]:

@@ -53,9 +53,9 @@ class DrivenRun:
 
     @property
     def bench_words(self) -> str:
-        """`bench twin, simulated (twin), seed 3` or `bench lab-1`."""
+        """`twin, simulated (twin), seed 3` or `lab-1`: its name, and where the numbers are from."""
         seed = self.header.get("seed")
-        words = [f"bench {self.bench.name}", origin(self.header), "" if seed is None else f"seed {seed}"]
+        words = [self.bench.name, origin(self.header), "" if seed is None else f"seed {seed}"]
         return ", ".join(word for word in words if word)
 
 
