@@ -10,8 +10,8 @@ import click
 
 from benchlab.cli.bench_calibrate import calibrate
 from benchlab.cli.bench_monitor import monitor
-from benchlab.cli.bench_options import bench_option, calibration_option
-from benchlab.errors import printable
+from benchlab.cli.bench_options import bench_option, calibration_option, device_of
+from benchlab.errors import BenchlabError, printable
 
 
 @click.group(short_help="Calibrate, vent, watch and flash a pressure bench.")
@@ -40,11 +40,13 @@ def vent(bench: str, calibration: Path | None, as_json: bool) -> None:
     """
     from benchlab.runner.clock import RealClock
     from benchlab.workflows.bench_vent import vent_bench
-    from benchlab.workflows.open_bench import bench_doubts, bench_of, open_bench, spec_of
+    from benchlab.workflows.open_bench import bench_of, open_bench
 
-    calibrated = bench_of(spec_of(bench), calibration)
-    for doubt in bench_doubts(spec_of(bench), calibrated):
-        click.echo(f"warning: {printable(doubt)}", err=True)
+    spec, refused = device_of(bench), None
+    try:
+        calibrated = bench_of(spec, calibration)
+    except BenchlabError as error:  # a vent does not wait for a file that can be read
+        calibrated, refused = bench_of(spec), error
     with closing(open_bench(bench, calibrated)) as device:
         found = vent_bench(device, calibrated, RealClock())
     pressure = found["pressure_MPa"]
@@ -56,6 +58,8 @@ def vent(bench: str, calibration: Path | None, as_json: bool) -> None:
     click.echo(f"vented: the DAC holds code 0 and the latch is closed; {seen}", err=True)
     for fault in found["faults"]:
         click.echo(f"  {printable(fault)}", err=True)
+    if refused is not None:
+        raise refused
     if as_json:
         click.echo(json.dumps(found, indent=2, allow_nan=False))
 

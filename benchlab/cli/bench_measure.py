@@ -9,12 +9,13 @@ import click
 
 from benchlab.bench import Bench, Line
 from benchlab.cli.bench_answers import Answers, ask_unit, ask_volts, pressure_of
+from benchlab.cli.bench_options import device_of
 from benchlab.errors import InputError, UsageError, printable
 from benchlab.io.bench_file import SIMULATED, GaugeReading
 from benchlab.twin.lines import SUPPLY_V
 from benchlab.workflows.bench_hold import ThreadHold, VirtualHold
 from benchlab.workflows.bench_readings import Level, levels_MPa, take_readings, twin_gauge
-from benchlab.workflows.open_bench import open_bench, spec_of
+from benchlab.workflows.open_bench import open_bench
 
 TWIN_GAUGE = "twin"
 
@@ -24,9 +25,7 @@ UNLIKE = 2.0
 
 def measure(text: str, gauge: str, options: dict[str, Any]) -> tuple[list[GaugeReading], float, str]:
     """Readings, supply, and what the file says of the gauge, from an open bench."""
-    kind = spec_of(text).kind
-    if kind == "replay":
-        raise UsageError("a replay cannot be calibrated", hint="give serial:PORT")
+    kind = device_of(text).kind
     simulated = gauge == TWIN_GAUGE
     if simulated and kind != "twin":
         raise UsageError("--gauge twin is the simulated gauge of a twin", hint=f"say which gauge is at {text}")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from benchlab.cli.bench_options import bench_option, calibration_option
+from benchlab.cli.bench_options import bench_option, calibration_option, device_of
 from benchlab.cli.options import Finite
 from benchlab.errors import BenchlabError, printable
 
@@ -58,7 +58,7 @@ def monitor(
     from benchlab.io.files import check_new_file
     from benchlab.runner.clock import RealClock
     from benchlab.workflows.bench_monitor import summary, watch, write_seen
-    from benchlab.workflows.open_bench import bench_doubts, bench_of, open_bench, spec_of
+    from benchlab.workflows.open_bench import bench_doubts, bench_of, open_bench
 
     if not 0.1 <= rate_Hz <= 200:
         raise UsageError(f"--rate-Hz is {rate_Hz:g}", hint="give 0.1 to 200")
@@ -68,8 +68,9 @@ def monitor(
         raise UsageError("--json-lines and --json both write to standard output", hint="give one of them")
     if out is not None:
         check_new_file(out, overwrite)
-    calibrated = bench_of(spec_of(bench), calibration)
-    for doubt in bench_doubts(spec_of(bench), calibrated):
+    spec = device_of(bench)
+    calibrated = bench_of(spec, calibration)
+    for doubt in bench_doubts(spec, calibrated):
         click.echo(f"warning: {printable(doubt)}", err=True)
     kept: list[Seen] = []
     lost: BenchlabError | None = None

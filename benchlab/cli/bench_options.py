@@ -4,9 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
+
+from benchlab.errors import UsageError
+
+if TYPE_CHECKING:
+    from benchlab.workflows.open_bench import Spec
 
 BENCHES = "twin | twin:FILE | serial:PORT | emulated"
 
@@ -35,3 +40,13 @@ calibration_option = click.option(
     metavar="FILE",
     help="The bench's calibration, by `benchlab bench calibrate`. Without it a real bench is given 3.50 V at most.",
 )
+
+
+def device_of(text: str) -> Spec:
+    """`--bench` where a replay makes no sense: it is no device. UsageError for one, and for what is no bench."""
+    from benchlab.workflows.open_bench import spec_of
+
+    spec = spec_of(text)
+    if spec.kind == "replay":
+        raise UsageError("a replay is a recording, no bench", hint=f"give {BENCHES}")
+    return spec

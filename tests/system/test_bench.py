@@ -47,6 +47,21 @@ def test_vent_says_what_was_confirmed(benchlab, calibration: Path) -> None:
     assert done.json["confirmed"] and done.json["code"] == 0 and abs(done.json["pressure_MPa"]) < 0.001
 
 
+def test_vent_does_not_wait_for_a_calibration_that_can_be_read(benchlab, calibration: Path) -> None:
+    calibration.write_text("name: [")
+    with SmallNano() as nano:
+        nano.code, nano.armed = 500, True
+        done = benchlab("bench", "vent", "--bench", f"serial:{nano.port}", "--calibration", calibration)
+        assert nano.code == 0 and not nano.armed and "vent" in nano.vents
+    assert done.code == 3 and "vented: the DAC holds code 0" in done.err and "left.yaml" in done.err
+
+
+def test_a_replay_is_no_bench(benchlab) -> None:
+    for command in ("vent", "monitor"):
+        done = benchlab("bench", command, "--bench", "replay:x.journal")
+        assert done.code == 2 and "no bench" in done.err
+
+
 def test_vent_of_a_bench_that_keeps_its_pressure_is_not_confirmed(benchlab, calibration: Path, monkeypatch) -> None:
     from benchlab.workflows import bench_vent
 
@@ -332,7 +347,7 @@ def test_a_twin_s_gauge_is_simulated_and_its_calibration_is_for_no_bench_of_meta
     assert done.json["readings"] == 15 and len(read_bench_file(out).readings) == 15
     with SmallNano() as nano:
         done = benchlab("bench", "vent", "--bench", f"serial:{nano.port}", "--calibration", out)
-    assert done.code == 3 and "no pressure of a bench of metal" in done.err and not nano.vents
+    assert done.code == 3 and "no pressure of a bench of metal" in done.err and nano.vents and "vented: " in done.err
     done = benchlab("bench", "monitor", "--bench", "twin", "--calibration", out, "--seconds", "0.2", "--json")
     assert done.code == 0 and abs(done.json["pressure_MPa"]["mean"]) < 0.005
 
