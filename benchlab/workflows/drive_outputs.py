@@ -50,7 +50,7 @@ def summary(journal: Journal) -> dict[str, Any]:
     complete: whether it has a record of its end. vented: None where nobody knows.
     """
     stop = journal.stop or {}
-    ticks = journal.header.get("plan", {}).get("ticks")
+    plan = journal.header.get("plan")
     return {
         "title": str(journal.header.get("title", "")),
         "origin": origin(journal.header) or "measured",
@@ -60,7 +60,7 @@ def summary(journal: Journal) -> dict[str, Any]:
         "vented": stop.get("vented"),
         "samples": len(journal.samples),
         "ticks": len(set(journal.samples["tick"].tolist())),
-        "ticks_planned": ticks,
+        "ticks_planned": plan.get("ticks") if isinstance(plan, dict) else None,
         "last_time_s": float(journal.samples["time_s"][-1]),
         "last_command_MPa": float(journal.samples["command_MPa"][-1]),
         "events": len(journal.events),
