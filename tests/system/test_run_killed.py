@@ -1,0 +1,187 @@
+"""A run as a process of its own, in real time: what signals, a full disk and kill -9 leave of it."""
+
+from __future__ import annotations
+
+import json
+import resource
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from benchlab.io.journal import Journal, read_journal
+
+PROTOCOL = """\
+title: Long
+limit_MPa: 0.35
+segments:
+  - ramp: {to_MPa: 0.2, duration_s: 0.5}
+  - hold: {duration_s: 60}
+"""
+
+Process = subprocess.Popen[str]
+
+
+class Runs:
+    """Starts runs, and ends those that are left."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.protocol = folder / "long.yaml"
+        self.protocol.write_text(PROTOCOL)
+        self.processes: list[Process] = []
+
+    def start(self, *options: str, **popen: Any) -> Process:
+        command = [
+            sys.executable,
+            "-m",
+            "benchlab",
+            "run",
+            self.protocol,
+            "--out",
+            self.folder,
+            "--name",
+            "a",
+            "--json",
+        ]
+        process = subprocess.Popen(
+            [*command, *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **popen
+        )
+        self.processes.append(process)
+        return process
+
+    def going(self, process: Process, ticks: int = 60) -> None:
+        """Wait until so many ticks are in the journal."""
+        journal, until = self.folder / "a.journal", time.monotonic() + 30
+        while time.monotonic() < until and process.poll() is None:
+            if journal.exists() and journal.stat().st_size > 4000 and len(read_journal(journal).samples) >= ticks:
+                return
+            time.sleep(0.02)
+        pytest.fail(f"the run does not go on: {process.communicate(timeout=1)}")
+
+    @property
+    def journal(self) -> Journal:
+        return read_journal(self.folder / "a.journal")
+
+
+@pytest.fixture
+def runs(tmp_path: Path) -> Iterator[Runs]:
+    found = Runs(tmp_path)
+    yield found
+    for process in found.processes:
+        if process.poll() is None:
+            process.kill()
+        process.communicate()
+
+
+@pytest.mark.parametrize(
+    ("number", "reason"),
+    [(signal.SIGINT, "interrupted"), (signal.SIGTERM, "terminated"), (signal.SIGHUP, "hung up")],
+    ids=["SIGINT", "SIGTERM", "SIGHUP"],
+)
+def test_a_signal_vents_and_leaves_all_files(runs: Runs, number: int, reason: str) -> None:
+    process = runs.start()
+    runs.going(process)
+    process.send_signal(number)
+    if number == signal.SIGINT:
+        process.send_signal(number)  # a second one, while it vents, changes nothing
+    out, err = process.communicate(timeout=30)
+    found = json.loads(out)
+    assert process.returncode == 130, err
+    assert (found["reason"], found["vented"], found["error"]["code"]) == (reason, True, 130)
+    assert runs.journal.stop and runs.journal.stop["reason"] == reason and runs.journal.stop["vented"]
+    assert found["ticks"] == len(runs.journal.samples) and 0 < found["late_ms"]["p50"] < 50
+    assert sorted(path.suffix for path in runs.folder.glob("a.*")) == [".csv", ".csv", ".h5", ".journal", ".png"]
+
+
+def test_a_run_that_is_killed_leaves_a_journal_that_recover_reads(runs: Runs, benchlab: Any) -> None:
+    process = runs.start()
+    runs.going(process)
+    process.kill()
+    process.communicate()
+    journal = runs.journal
+    assert not journal.complete and journal.lost_bytes == 0 and len(journal.samples) >= 60
+    assert journal.samples["tick"].tolist() == list(range(len(journal.samples)))
+    done = benchlab("recover", runs.folder / "a.journal", "--json")
+    assert done.code == 0 and done.json["samples"] == len(journal.samples) and (runs.folder / "a.h5").exists()
+
+
+def test_usr1_pauses_and_goes_on(runs: Runs) -> None:
+    process = runs.start()
+    runs.going(process)
+    process.send_signal(signal.SIGUSR1)
+    time.sleep(0.3)
+    process.send_signal(signal.SIGUSR1)
+    time.sleep(0.3)
+    process.send_signal(signal.SIGTERM)
+    process.communicate(timeout=30)
+    kinds = [event["kind"] for event in runs.journal.events]
+    assert kinds == ["pause", "resume", "stop"]
+    assert 0.2 < (runs.journal.stop or {})["paused_s"] < 3
+    ticks = runs.journal.samples["tick"].astype(int)
+    assert set(np.diff(ticks)) == {0, 1}  # held, then on, and none left out
+
+
+def test_a_pause_that_is_forgotten_vents(runs: Runs) -> None:
+    process = runs.start("--pause-limit-s", "0.3")
+    runs.going(process)
+    process.send_signal(signal.SIGUSR1)
+    out, err = process.communicate(timeout=30)
+    assert process.returncode == 5 and json.loads(out)["reason"] == "pause", err
+    assert "a pause lasts 0.3 s at most" in err and json.loads(out)["vented"]
+
+
+def test_a_stopped_process_finds_itself_late_and_ends(runs: Runs) -> None:
+    process = runs.start()
+    runs.going(process)
+    process.send_signal(signal.SIGSTOP)
+    time.sleep(0.6)
+    process.send_signal(signal.SIGCONT)
+    out, err = process.communicate(timeout=30)
+    found = json.loads(out)
+    assert process.returncode == 5 and found["reason"] == "overrun" and found["vented"], err
+    assert "after its deadline, more than 0.25 s" in err
+    assert runs.journal.samples["late_s"].max() <= 0.25
+
+
+def test_a_full_disk_vents_and_keeps_what_was_measured(runs: Runs) -> None:
+    def small_files() -> None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
+
+    process = runs.start(preexec_fn=small_files)
+    out, err = process.communicate(timeout=40)
+    found = json.loads(out)
+    assert process.returncode == 3 and found["reason"] == "journal" and found["vented"], err
+    assert "the journal could not be written" in err and "recover" in err
+    assert len(runs.journal.samples) > 60 and runs.journal.samples["tick"].tolist() == list(
+        range(len(runs.journal.samples))
+    )
+
+
+def test_two_runs_of_one_name_are_not_mixed(runs: Runs) -> None:
+    first = runs.start()
+    runs.going(first)
+    second = runs.start()
+    _, err = second.communicate(timeout=30)
+    assert second.returncode == 2 and "a.journal: exists, and measured data is never replaced" in err
+    first.send_signal(signal.SIGTERM)
+    first.communicate(timeout=30)
+    assert first.returncode == 130 and runs.journal.complete
+
+
+def test_a_reader_that_has_gone_does_not_stop_the_run(runs: Runs) -> None:
+    runs.protocol.write_text(PROTOCOL.replace("60", "0.5"))
+    process = runs.start()
+    assert process.stdout is not None and process.stderr is not None
+    process.stdout.close()
+    process.stderr.close()
+    process.wait(timeout=30)
+    assert runs.journal.stop and runs.journal.stop["reason"] == "completed"
+    process.stdout = process.stderr = None
+    assert (runs.folder / "a.h5").exists()
