@@ -31,6 +31,8 @@ def measure(text: str, gauge: str, options: dict[str, Any]) -> tuple[list[GaugeR
         raise UsageError("--gauge twin is the simulated gauge of a twin", hint=f"say which gauge is at {text}")
     if simulated and options["supply_V"] is not None:
         raise UsageError("--supply-V is measured, and a twin's is known", hint="leave --supply-V out")
+    if kind == "twin" and not simulated:
+        raise UsageError(f"there is no gauge {gauge!r} on a twin, which is simulated", hint="give --gauge twin")
     # What is not calibrated yet is driven as a bench that nobody calibrated.
     nominal = Bench(options["name"] or kind, Line(options["full_scale_MPa"] / 5, 0.0), limit_MPa=options["limit_MPa"])
     top = options["max_MPa"] or nominal.ceiling_MPa

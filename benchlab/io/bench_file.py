@@ -94,8 +94,8 @@ def read_bench(path: Path | None) -> Bench:
 def read_bench_file(path: Path) -> BenchFile:
     """The bench in a file, with its readings.
 
-    Raises UsageError for a missing file, InputError for numbers that no bench has, a date that is none, and a regulator's line
-    that does not go through the readings beside it.
+    Raises UsageError for a missing file, InputError for numbers that no bench has, a date that is none, and a regulator's or
+    monitor's line that does not go through the readings beside it.
     """
     found = read_document(path, _BenchDocument)
     flex = found.flex
@@ -114,7 +114,10 @@ def read_bench_file(path: Path) -> BenchFile:
     except InputError as error:
         raise InputError(error.what, file=path, where=error.where, hint=error.hint) from error
     readings = tuple(GaugeReading(r.volts, r.pressure_MPa, _or_nan(r.monitor_V), r.rising) for r in found.readings)
-    _check_line(path, bench.regulator, readings)
+    _check_line(path, "regulator", bench.regulator, [(r.volts, r.pressure_MPa) for r in readings])
+    if bench.monitor is not None:
+        watched = [(r.monitor_V, r.pressure_MPa) for r in readings if math.isfinite(r.monitor_V)]
+        _check_line(path, "monitor", bench.monitor, watched)
     return BenchFile(bench, readings, flex.source if flex else "")
 
 
@@ -208,15 +211,16 @@ def _reading(one: GaugeReading) -> dict[str, Any]:
     return {"volts": float(one.volts), "pressure_MPa": float(one.pressure_MPa), **monitor, **rising}
 
 
-def _check_line(path: Path, line: Line, readings: tuple[GaugeReading, ...]) -> None:
+def _check_line(path: Path, what: str, line: Line, readings: list[tuple[float, float]]) -> None:
+    """readings: volts and pressure, which the line should go through."""
     if not readings:
         return
-    off = math.sqrt(sum((line.of(r.volts) - r.pressure_MPa) ** 2 for r in readings) / len(readings))
+    off = math.sqrt(sum((line.of(volts) - pressure) ** 2 for volts, pressure in readings) / len(readings))
     most = _EDITED_SDS * (0.0 if math.isnan(line.sd) else line.sd) + _EDITED_MPA
     if off > most:
         raise InputError(
-            f"the regulator's line lies {off:.4f} MPa off the readings in this file, more than {most:.4f} MPa",
+            f"the {what}'s line lies {off:.4f} MPa off the readings in this file, more than {most:.4f} MPa",
             file=path,
-            where="regulator",
+            where=what,
             hint="was it edited by hand? calibrate again, or take the readings out",
         )

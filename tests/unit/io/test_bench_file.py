@@ -96,10 +96,12 @@ def test_mistakes_are_refused_with_their_place(tmp_path: Path, old: str, new: st
     assert str(path) in str(refused.value) and line in str(refused.value) and named in str(refused.value)
 
 
-def test_a_line_that_was_edited_does_not_go_through_its_readings(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("old", "new"), [("0.0962", "0.0862"), ("0.12\n", "0.11\n")], ids=["regulator", "monitor"])
+def test_a_line_that_was_edited_does_not_go_through_its_readings(tmp_path: Path, old: str, new: str) -> None:
     path = tmp_path / "bench.yaml"
     write_bench_file(path, BenchFile(replace(BENCH, flex=None), READINGS))
-    path.write_text(path.read_text().replace("gain_MPa_per_V: 0.0962", "gain_MPa_per_V: 0.0862"))
+    assert path.read_text().count(f"gain_MPa_per_V: {old}") == 1
+    path.write_text(path.read_text().replace(f"gain_MPa_per_V: {old}", f"gain_MPa_per_V: {new}"))
     with pytest.raises(InputError, match="edited by hand"):
         read_bench(path)
 
