@@ -20,6 +20,7 @@ from benchlab.cli.export import export
 from benchlab.cli.fit_material import fit_material
 from benchlab.cli.force import force
 from benchlab.cli.recover import recover
+from benchlab.cli.protocol import protocol
 from benchlab.cli.report import report
 from benchlab.cli.run import run as run_protocol
 from benchlab.cli.sample_data import sample_data
@@ -81,6 +82,7 @@ cli.add_command(export)
 cli.add_command(fit_material)
 cli.add_command(force)
 cli.add_command(recover)
+cli.add_command(protocol)
 cli.add_command(report)
 cli.add_command(run_protocol)
 cli.add_command(sample_data)

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 
 from benchlab.protocol.segments import sine_range
-from benchlab.protocol.stretch import DECIMALS, CannotBeginError, State, Stretch
+from benchlab.protocol.stretch import DECIMALS, CannotBeginError, State, Stretch, slope
 from benchlab.protocol.waves import constant, sine_from, straight
 
 
@@ -62,7 +62,7 @@ class AngleRamp:
             end=self.to_deg,
             low=min(start, self.to_deg),
             high=max(start, self.to_deg),
-            slew=change / duration_s if duration_s else math.inf,
+            slew=slope(change, duration_s),
             of=straight(start, self.to_deg, duration_s),
             closed_loop=True,
         )
@@ -100,7 +100,7 @@ class AngleSine:
             end=start,
             low=low,
             high=high,
-            slew=2 * math.pi * self.frequency_Hz * self.amplitude_deg,
+            slew=slope(2 * math.pi * self.amplitude_deg, period_s),
             of=sine_from(start, self.mean_deg, self.amplitude_deg, period_s),
             closed_loop=True,
         )

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from benchlab.protocol.stretch import DECIMALS, CannotBeginError, State, Stretch
+from benchlab.protocol.stretch import DECIMALS, CannotBeginError, State, Stretch, slope
 from benchlab.protocol.waves import constant, sine_from, straight, there_and_back
 
 
@@ -17,8 +17,8 @@ from benchlab.protocol.waves import constant, sine_from, straight, there_and_bac
 class Ramp:
     """In a straight line from the present pressure; either how long it takes or how fast it is.
 
-    >>> Ramp(0.35, duration_s=2.5).begun(State()).label
-    'ramp 0 to 0.35 MPa in 2.5 s'
+    >>> Ramp(0.35, duration_s=2.5).begun(State()).slew
+    0.14
     """
 
     to_MPa: float
@@ -46,7 +46,7 @@ class Ramp:
             end=self.to_MPa,
             low=min(start, self.to_MPa),
             high=max(start, self.to_MPa),
-            slew=change / duration_s if duration_s else math.inf,
+            slew=slope(change, duration_s),
             of=straight(start, self.to_MPa, duration_s),
         )
 
@@ -119,7 +119,7 @@ class Sine:
             end=start,
             low=low,
             high=high,
-            slew=2 * math.pi * self.frequency_Hz * self.amplitude_MPa,
+            slew=slope(2 * math.pi * self.amplitude_MPa, period_s),
             of=sine_from(start, self.mean_MPa, self.amplitude_MPa, period_s),
         )
 
@@ -150,7 +150,7 @@ class Triangle:
         change = self.high_MPa - self.low_MPa
         period_s = 2 * change / self.rate_MPa_per_s if self.rate_MPa_per_s else 1 / (self.frequency_Hz or 1)
         period_s = round(period_s, DECIMALS)
-        slew = 2 * change / period_s if period_s else math.inf
+        slew = slope(2 * change, period_s)
         return Stretch(
             kind="triangle",
             label=f"triangle {self.low_MPa:g} to {self.high_MPa:g} MPa and back, {slew:.4g} MPa/s",

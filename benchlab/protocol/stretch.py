@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -56,3 +57,8 @@ class CannotBeginError(ValueError):
     def __init__(self, what: str, remedy: str) -> None:
         self.what, self.remedy = what, remedy
         super().__init__(f"{what}; {remedy}")
+
+
+def slope(change: float, duration_s: float) -> float:
+    """Steepness of a change, without a sign, rounded; infinite where it takes no time."""
+    return round(abs(change) / duration_s, DECIMALS) if duration_s else math.inf
