@@ -20,6 +20,9 @@ READINGS, PERIOD_S = 25, 0.02
 HIGH_SHARE = 0.04
 """A supply may be so much above the calibrated one, by the monitor's zero: 40 mV of 1 V, by which a regulator's own zero may wander."""
 
+HIGHEST_V = 5.75
+"""More is no supply of an ATmega328P: its monitor is not there."""
+
 FULL_MPA, WAIT_S = 0.01, 5.0
 """A bench with more than the first is not empty; it is waited for as long as the second."""
 
@@ -38,9 +41,14 @@ def check_zero(device: Device, bench: Bench, clock: Clock) -> None:
     if pressure > FULL_MPA:
         raise BenchError(
             f"the bench is vented, and its monitor shows {1000 * pressure:.1f} kPa after {WAIT_S:g} s",
-            hint="let the air out, wait, or calibrate it again: its monitor's zero has moved, or its supply is lower",
+            hint="let the air out, wait, or calibrate it again: is the monitor wired to A1, has its zero moved, is the supply lower?",
         )
     share = bench.monitor.inverse(0.0) / volts - 1 if volts > 0 else math.inf
+    if bench.supply_V * (1 + share) > HIGHEST_V:
+        raise BenchError(
+            f"the monitor of the vented bench reads {volts:.3f} V instead of {bench.monitor.inverse(0.0):.3f} V, which no supply explains",
+            hint="is it wired to A1, and does its regulator have its own supply? else take `monitor` out of the bench file",
+        )
     if share > HIGH_SHARE:
         raise BenchError(
             f"the monitor of the vented bench reads {volts:.3f} V instead of {bench.monitor.inverse(0.0):.3f} V, as if the supply were "

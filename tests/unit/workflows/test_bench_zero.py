@@ -44,6 +44,11 @@ def test_a_bench_that_is_emptying_is_waited_for_and_one_that_stays_full_is_told(
         check_zero(Vented(pressure_MPa=0.05), BENCH, VirtualClock())
 
 
+def test_a_monitor_that_is_not_wired_is_told_from_a_supply() -> None:
+    with pytest.raises(BenchError, match=r"reads 0\.490 V.*no supply explains"):
+        check_zero(Vented(10.0), BENCH, VirtualClock())
+
+
 def test_without_a_monitor_nothing_is_asked() -> None:
     device = Vented()
     check_zero(device, Bench("left", calibrated=True), VirtualClock())
