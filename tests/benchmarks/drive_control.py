@@ -224,6 +224,30 @@ def robustness(known: Tuned, seeds: int) -> None:
         print(f"  {name:22}" + "".join(f"{word:>22}" for word in words))
 
 
+def true_margins(known: Tuned) -> None:
+    """By what factor the tuned gains can be multiplied before the twin swings, beside the computed gain margin."""
+    tuning, top = known.tuning, known.bench.ceiling_MPa
+    curve = known.twin.curve
+    print(
+        "\ngain margin: computed from the plant, and found on the twin by holding an angle with larger and larger gains"
+    )
+    for level in (20.0, 60.0, 100.0):
+        pressure = float(np.interp(level, curve.angle_deg, curve.pressure_MPa))
+        near = sorted(zip(known.plant.plants, tuning.margins), key=lambda pair: abs(pair[0].pressure_MPa - pressure))[
+            :2
+        ]
+        computed = min(margins.gain_margin for _, margins in near)
+        plan = unroll((AngleRamp(level, 2.0), AngleHold(level, 6.0)), "hold", 100.0, 0.35)
+        low, high = 1.0, 10.0
+        while high - low > 0.1:
+            factor = (low + high) / 2
+            pi = PI(factor * tuning.kp_MPa_per_deg, factor * tuning.ki_MPa_per_deg_s, top)
+            seen = run(plan, known.twin, known.bench, pi)
+            swings = float(seen.true_deg[seen["time_s"] > 5].std()) > 1.0
+            low, high = (low, factor) if swings else (factor, high)
+        print(f"  {level:4.0f}° ({pressure:.3f} MPa): computed {computed:.2f}, on the twin {low:.1f}")
+
+
 class BackCalculation(PI):
     """Anti-windup by back-calculation: I' = ki·e + (given − wanted)/Tt (Åström and Hägglund 2006, section 3.5)."""
 
@@ -337,6 +361,7 @@ def main() -> None:
     robustness(known, max(3, seeds // 4))
     variants(known, max(3, seeds // 4))
     windup(known)
+    true_margins(known)
     print()
     for bar, figure, met in rows(seeds):
         print(f"{'met    ' if met else 'NOT MET'} {bar}: {figure}")

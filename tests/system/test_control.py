@@ -13,12 +13,16 @@ import cv2
 import numpy as np
 import pytest
 
+from benchlab.bench import Bench
 from benchlab.cli.app import run
+from benchlab.control.pi import PI
 from benchlab.devices.twin.bench import twin_bench
+from benchlab.devices.twin.twin import Twin
 from benchlab.errors import UsageError
 from benchlab.io.bench_file import read_bench_file
-from benchlab.io.control_file import read_control
+from benchlab.io.control_file import ControlFile, read_control
 from benchlab.io.drive_file import read_drive_file, write_drive_file
+from benchlab.io.twin_file import read_twin
 from benchlab.workflows.control_flex import _starts
 from benchlab.workflows.driven import read_driven
 
@@ -156,3 +160,25 @@ def test_the_truth_of_a_real_bench_is_not_taken(guided: Path, benchlab, tmp_path
     done = benchlab("control", "track", tmp_path / "real.h5", "--out", tmp_path, "--truth", guided / "sine.truth.csv")
     assert done.code == 3 and "nobody knows the truth" in done.err
     assert benchlab("control", "track", tmp_path / "real.h5", "--out", tmp_path).code == 0
+
+
+def test_the_computed_gain_margin_is_that_of_the_twin(guided: Path) -> None:
+    """Held at 20°, where the gain is largest, the loop is quiet at 0.85 of its gain margin and swings at 1.25."""
+    control, bench = read_control(guided / "control.yaml"), read_bench_file(guided / "bench.yaml").bench
+    margin = min(margins.gain_margin for pressure, _, margins in control.points if 0.04 < pressure < 0.07)
+    quiet, swinging = (_swing_deg(control, bench, share * margin) for share in (0.85, 1.25))
+    assert quiet < 0.5 and swinging > 2.0
+
+
+def _swing_deg(control: ControlFile, bench: Bench, factor: float) -> float:
+    """Standard deviation of the true angle while 20° are held with gains so many times as large."""
+    twin = Twin(read_twin(None), bench)
+    pi = PI(factor * control.kp_MPa_per_deg, factor * control.ki_MPa_per_deg_s, bench.ceiling_MPa)
+    twin.arm()
+    pressure, flex = 0.0, bench.flex
+    assert flex is not None
+    for tick in range(600):
+        angle = flex.of(twin.exchange(tick * 0.01, pressure).flex_V)
+        reference = min(20.0, 0.1 * tick)
+        pressure = pi.pressure_MPa(reference, reference, angle, 0.01)
+    return float(twin.truth.angle_deg[400:].std())
