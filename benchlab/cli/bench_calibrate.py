@@ -134,6 +134,8 @@ def _check(bench: str | None, gauge: str, options: dict[str, Any]) -> None:
         raise UsageError(
             "--gauge is empty", hint="say which gauge, so that a reviewer knows what the pressures rest on"
         )
+    if options["readings"] is not None and (options["unit"] or options["max_MPa"]):
+        raise UsageError("--unit and --max-MPa are for a bench", hint="--readings has its units in its header")
     if options["readings"] is not None and options["supply_V"] is None:
         raise UsageError("--readings needs --supply-V", hint="volts become codes by it")
     if options["supply_V"] is not None and not 4.5 <= options["supply_V"] <= 5.5:

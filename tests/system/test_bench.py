@@ -366,6 +366,7 @@ def test_the_bench_file_of_the_guide_reads(tmp_path: Path) -> None:
         (("--gauge", "a"), "either --bench or --readings"),
         (("--gauge", " ", "--bench", "twin"), "--gauge is empty"),
         (("--gauge", "a", "--readings", "x.csv"), "--supply-V"),
+        (("--gauge", "a", "--readings", "x.csv", "--supply-V", "5", "--unit", "kPa"), "--unit"),
         (("--gauge", "a", "--bench", "twin", "--supply-V", "3.3"), "--supply-V"),
         (("--gauge", "a", "--bench", "twin", "--unit", "mPa"), "--unit"),
         (("--gauge", "a", "--bench", "twin"), "no gauge 'a' on a twin"),
