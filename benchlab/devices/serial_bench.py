@@ -194,8 +194,8 @@ class SerialBench:
 
     def _insist(self, command: int, payload: bytes, what: str) -> Answer:
         """Ask up to TRIES times; LostError if nobody answers."""
-        for again in range(TRIES):
-            heard = self._ask(command, payload, TRY_S, again=again > 0)
+        for _ in range(TRIES):
+            heard = self._ask(command, payload, TRY_S)
             if heard is not None and (answer := answer_of(heard)):
                 self._reading(answer)
                 return answer
@@ -203,10 +203,10 @@ class SerialBench:
         raise LostError(f"nobody answered `{what}` in {TRIES * TRY_S:g} s", file=self._line.name,
                         hint="vent by hand; the firmware vents by itself once it hears nothing")  # fmt: skip
 
-    def _ask(self, command: int, payload: bytes, timeout_s: float, again: bool = False) -> bytes | None:
+    def _ask(self, command: int, payload: bytes, timeout_s: float) -> bytes | None:
         """Send, and wait for the answer to this and no other; None where it does not come in time."""
         line = self._line
-        line.write(self._wire.ask(command, payload, again))
+        line.write(self._wire.ask(command, payload))
         until = line.clock_s() + timeout_s
         while (left := until - line.clock_s()) > 0:
             if (heard := self._wire.hear(line.read(left))) is not None:

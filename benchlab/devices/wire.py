@@ -97,10 +97,9 @@ class Wire:
         self._waiting = False
         self._command = 0
 
-    def ask(self, command: int, payload: bytes = b"", again: bool = False) -> bytes:
-        """The bytes of the next command, or of the last one again, under the same number."""
-        if not again:
-            self.number = (self.number + 1) % NUMBERS
+    def ask(self, command: int, payload: bytes = b"") -> bytes:
+        """The bytes of the next command."""
+        self.number = (self.number + 1) % NUMBERS
         self._command, self._waiting = command, True
         return encode(Frame(self.number, command, payload))
 

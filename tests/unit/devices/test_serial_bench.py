@@ -246,9 +246,52 @@ def test_a_vent_that_nobody_confirms_is_lost(line: FaultyLine) -> None:
     line.up.extend(["lose"] * 100)
     with pytest.raises(LostError, match=r"nobody answered `vent` in 0.5 s"):
         device.vent()
+    with pytest.raises(BenchError, match=r"not armed"):
+        device.exchange(0.0, 0.1)
     device.close()  # tries once more, and never raises
     with pytest.raises(LostError, match=r"nobody confirmed"):
         device.vent()
+
+
+def test_a_closed_bench_says_so(line: FaultyLine) -> None:
+    device = SerialBench(line, BENCH)
+    device.close()
+    device.close()
+    device.vent()  # it was vented
+    for act in (device.arm, lambda: device.exchange(0.0, 0.0)):
+        with pytest.raises(BenchError, match=r"the bench is closed"):
+            act()
+
+
+def test_noise_from_before_the_first_answer_is_no_fault(line: FaultyLine) -> None:
+    line.up.append("noise")
+    assert SerialBench(line, BENCH).faults() == []
+
+
+def test_it_waits_as_long_as_its_rate_allows(line: FaultyLine) -> None:
+    device = SerialBench(line, BENCH)
+    device.arm()
+    for tick in range(100):
+        device.exchange(tick / 500, 0.05)
+    line.up.append("lose")
+    device.exchange(100 / 500, 0.05)
+    assert "no answer to a command within 2 ms; went on without" in causes(device)
+    for tick in range(60):
+        device.exchange(0.2 + tick / 50, 0.05)
+    line.up.append("lose")
+    device.exchange(0.2 + 60 / 50, 0.05)
+    assert "no answer to a command within 16 ms; went on without" in causes(device)
+
+
+def test_the_nanos_counters_begin_again() -> None:
+    """At 65535 they begin again at 0; after a boot too."""
+    tally, wire = serial_bench.Tally(), serial_bench.Wire()
+    for crc_errors in (65530, 65533, 2, 4, 65000, 7):
+        tally.device(crc_errors, 0)
+    (fault,) = tally.take(wire)
+    assert fault.count == 3 + 5 + 2 + 64996 + 543
+    tally.device(3, 0)
+    assert [fault.count for fault in tally.take(wire)] == [3]
 
 
 def test_a_reset_in_mid_run_is_told_and_not_mended(line: FaultyLine, emulator: Emulator) -> None:
