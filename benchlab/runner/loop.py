@@ -143,8 +143,6 @@ class Loop:
         if not self._controlling:
             self.controller.start(self._command_MPa)
             self._controlling = True
-        if math.isnan(self._angle_deg):
-            return self._command_MPa
         dt_s = 1 / self.plan.rate_Hz
         return self.controller.pressure_MPa(reference_deg, self.ahead_deg[index], self._angle_deg, dt_s)
 
@@ -189,8 +187,7 @@ class Loop:
     ) -> Tick:
         self._command_MPa = command_MPa
         angle = NAN if self.bench.flex is None else self.bench.flex.of(reading.flex_V)
-        if not math.isnan(angle):
-            self._angle_deg = angle
+        self._angle_deg = angle
         if not held:
             self.ticks += 1
             self.late_s.append(late_s)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from benchlab.control.pi import PI
 from benchlab.devices.interface import Fault, LostError, Status
 from benchlab.errors import BenchError, InputError
 from benchlab.io.journal import SAMPLE
@@ -304,3 +305,19 @@ def test_a_wish_to_stop_counts_in_a_pause() -> None:
 
     end, _, _ = run(stop=stop, on_tick=wish)
     assert end.reason == "quit" and end.paused_s > 0.3
+
+
+def test_a_controller_is_told_of_a_missing_angle() -> None:
+    """So that it can hold the pressure; the angle of long ago is no measurement."""
+
+    def lose(n: int, fields: dict[str, Any]) -> None:
+        if 250 <= n < 253:
+            fields["flex_V"] = math.nan
+
+    pressure, reference = ramp(), np.full(300, np.nan)
+    pressure[200:], reference[200:] = np.nan, 90.0
+    end, device, _ = run(
+        plan=plan_of(pressure, reference_deg=reference), device=FakeDevice(lose), controller=PI(1e-4, 1e-2, 0.35)
+    )
+    asked = [p for _, p, _ in device.asked]
+    assert end.reason == "completed" and asked[251] == asked[252] == asked[253] == asked[250] != asked[254]
