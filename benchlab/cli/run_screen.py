@@ -1,25 +1,28 @@
-"""What is seen of a run while it goes on: three lines on a terminal, a plain line now and then elsewhere. All on standard error.
+"""What is seen of a run while it goes on: four lines on a terminal, a plain line now and then elsewhere. All on standard error.
 
 Drawn from a thread of its own, ten times a second at most, so that a terminal that is slow, stopped or gone holds up nothing.
 """
 
 from __future__ import annotations
 
-import io
 import math
+import os
 import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 
+from rich.cells import cell_len, set_cell_size
+
 from benchlab.cli.progress import PLAIN_EVERY_S, fancy
-from benchlab.devices.interface import Reading, Status
 from benchlab.errors import printable
 from benchlab.protocol.plan import Plan
 from benchlab.runner.stop import Stop
 from benchlab.runner.tick import Tick
 
 DRAW_EVERY_S = 0.1
+ESC = "\x1b["
+PLAIN, BOLD, DIM = f"{ESC}0m", f"{ESC}1m", f"{ESC}2m"
 
 
 class Screen:
@@ -76,33 +79,44 @@ def shown(screen: Screen, title: str, quiet: bool) -> Iterator[None]:
 
 
 def _drawing(screen: Screen, title: str, over: threading.Event) -> Callable[[], None]:
-    """What a thread does on a terminal. All is imported and drawn once before it starts, as both take milliseconds."""
-    from rich.console import Console, Group
-    from rich.live import Live
-    from rich.progress_bar import ProgressBar
-    from rich.table import Table
-    from rich.text import Text
-
-    def lines(tick: Tick) -> Group:
-        first = Table.grid(padding=(0, 1), expand=True)
-        first.add_column(no_wrap=True)
-        first.add_column(ratio=1, min_width=10)
-        first.add_column(no_wrap=True, overflow="ellipsis")
-        bar = ProgressBar(total=max(1, len(screen.plan.time_s) - 1), completed=tick.index)
-        first.add_row(Text(title, "bold"), bar, Text(screen.place(tick)))
-        values = Text(screen.values(tick), no_wrap=True, overflow="ellipsis")
-        hint = Text(screen.hint(), "bold yellow" if screen.stop.paused else "dim", no_wrap=True, overflow="ellipsis")
-        return Group(first, values, hint)
+    """What a thread does on a terminal. Plain text, not rich.live: while one thread of Python computes, the others wait."""
 
     def draw() -> None:
-        with suppress(OSError), Live(console=Console(stderr=True), auto_refresh=False, transient=True) as live:
+        height = 0
+        with suppress(OSError):
             while not over.wait(DRAW_EVERY_S):
                 if screen.tick is not None:
-                    live.update(lines(screen.tick), refresh=True)
+                    width = os.get_terminal_size(sys.stderr.fileno()).columns
+                    lines = drawn_lines(screen, screen.tick, title, width)
+                    _put(up_by(height) + "".join(f"{line}\n" for line in lines))
+                    height = len(lines)
+            _put(up_by(height))
 
-    at_rest = Reading(math.nan, math.nan, -1, math.nan, Status(0))
-    Console(file=io.StringIO(), force_terminal=True).print(lines(Tick(0, 0.0, 0.0, 0.0, at_rest, 0)))
     return draw
+
+
+def drawn_lines(screen: Screen, tick: Tick, title: str, width: int) -> list[str]:
+    """Bar and title, place, values, keys: each fits into the width of the terminal."""
+    room = max(10, min(60, width - len(title) - 2))
+    full = round(room * tick.index / max(1, len(screen.plan.time_s) - 1))
+    bar = "━" * full + "─" * (room - full)
+    lines = [f"{title} {bar}", f"{screen.place(tick)}", screen.values(tick), screen.hint()]
+    styles = [BOLD, PLAIN, PLAIN, BOLD if screen.stop.paused else DIM]
+    return [f"{style}{_clipped(line, width - 1)}{PLAIN}" for style, line in zip(styles, lines)]
+
+
+def up_by(height: int) -> str:
+    """To the first of so many lines above, and all below erased."""
+    return f"\r{f'{ESC}{height}A' if height else ''}{ESC}J"
+
+
+def _clipped(line: str, width: int) -> str:
+    return line if cell_len(line) <= width else f"{set_cell_size(line, width - 1)}…"
+
+
+def _put(text: str) -> None:
+    sys.stderr.write(text)
+    sys.stderr.flush()
 
 
 def _printing(screen: Screen, title: str, over: threading.Event) -> Callable[[], None]:
