@@ -1,5 +1,6 @@
 """A bench is held, spoken to all the time, and vented at every end of the holding."""
 
+import math
 import os
 import signal
 import threading
@@ -8,7 +9,7 @@ import time
 import pytest
 
 from benchlab.bench import Bench
-from benchlab.devices.interface import LostError
+from benchlab.devices.interface import LostError, Reading, Status
 from benchlab.errors import BenchError
 from benchlab.workflows.bench_hold import ThreadHold, VirtualHold
 from tests.unit.workflows.small_bench import SILENCE_S, SmallBench
@@ -35,9 +36,9 @@ def test_a_level_is_gone_to_slowly_and_its_readings_are_of_the_end() -> None:
     device = small()
     with ThreadHold(device, 0.005, 0.5) as hold:
         began = time.monotonic()
-        readings = hold.stand(0.1, 0.2)
-        assert time.monotonic() - began >= 0.2 + 0.2 - 0.01
-        assert {r.code for r in readings[-10:]} == {Bench("new").code(0.1)}
+        readings = hold.stand(0.1, 0.06)
+        assert time.monotonic() - began >= 0.2 + 0.06 - 0.01
+        assert {r.code for r in readings} == {Bench("new").code(0.1)}
 
 
 @pytest.mark.parametrize("hold", [ThreadHold, VirtualHold])
@@ -123,6 +124,19 @@ def test_a_bench_that_refuses_to_arm_says_so() -> None:
     device = Stubborn(Bench("new"))
     with pytest.raises(BenchError, match="acknowledge"), ThreadHold(device):
         pass
+    assert device.vents == 1
+
+
+@pytest.mark.parametrize("hold", [ThreadHold, VirtualHold])
+@pytest.mark.parametrize("status", [Status.SILENCE, Status.ARMED | Status.DAC_LOST, Status.REBOOTED])
+def test_a_bench_that_says_that_it_is_not_armed_is_held_no_longer(hold, status: Status) -> None:
+    class Says(SmallBench):
+        def exchange(self, time_s: float, pressure_MPa: float, trigger: bool = False) -> Reading:
+            return Reading(math.nan, 1.0, 0, time_s, status)
+
+    device = Says(Bench("new"))
+    with pytest.raises(BenchError, match="no longer armed"), hold(device, **FAST) as held:
+        held.stand(0.05, 0.1)
     assert device.vents == 1
 
 
