@@ -7,33 +7,25 @@ import typing
 from contextlib import suppress
 
 from benchlab.bench import Bench, LimitError
+from benchlab.devices.conversation import Conversation
 from benchlab.devices.interface import Fault, LostError, Reading, Status
 from benchlab.devices.messages import (
     ADC_STEPS,
     ARM,
-    HELLO,
-    PROTOCOL,
     SET,
     UNKNOWN_CODE,
     VENT,
     Answer,
-    Hello,
     answer_of,
     arm_payload,
-    hello_of,
     set_payload,
 )
-from benchlab.devices.tally import Tally
 from benchlab.devices.transport import SerialTransport, Transport
-from benchlab.devices.wire import Wire
 from benchlab.errors import BenchError
 
-BOOT_S = 4.0
-"""A Nano resets when its port is opened, and its bootloader waits up to 2 s for a new sketch."""
+PATIENCE = 0.8
+"""Of the time between exchanges: how long an exchange waits for its answer."""
 
-GARBAGE_S = 2.0
-TRY_S = 0.1
-TRIES = 5
 LOST_S = 0.5
 WHOLE_CLOCK = 1 << 32
 
@@ -47,15 +39,14 @@ class SerialBench:
 
     def __init__(self, transport: Transport, bench: Bench, kind: str = "serial") -> None:
         self.kind = kind
-        self._line, self._bench, self._wire, self._tally = transport, bench, Wire(), Tally()
+        self._line, self._bench, self._talk = transport, bench, Conversation(transport)
         self._armed = self._vented = self._closed = self._rebooted = False
         self._offset_s: float | None = None
         self._mute_s: float | None = None
         self._last_s, self._period_s = -math.inf, 0.01
         self._turns = self._micros = 0
         try:
-            self._hello = self._say_hello()
-            self._check_hello()
+            self._hello = self._talk.greet()
             self._boot = self._hello.boot
             self.vent()
         except BaseException:
@@ -103,7 +94,8 @@ class SerialBench:
         self._check_open()
         if self._rebooted:
             raise BenchError("the bench has booted since it was opened", file=self._line.name, hint="open it again")
-        answer = self._insist(ARM, arm_payload(self._boot), "arm")
+        answer = self._talk.insist(ARM, arm_payload(self._boot), "arm")
+        self._reading(answer)
         if self._rebooted or not answer.flags & Status.ARMED:
             cause = (
                 "its DAC does not acknowledge" if answer.flags & Status.DAC_LOST else "it has booted, or is not vented"
@@ -124,12 +116,12 @@ class SerialBench:
             raise BenchError("the bench is not armed and gives no pressure", file=self._line.name, hint="arm it first")
         self._follow(time_s)
         self._vented = self._vented and code == 0
-        asked_s, patience_s = self._line.clock_s(), 0.8 * self._period_s
-        heard = self._ask(SET, set_payload(code, trigger), patience_s)
+        asked_s, patience_s = self._line.clock_s(), PATIENCE * self._period_s
+        heard = self._talk.ask(SET, set_payload(code, trigger), patience_s)
         if heard is not None and (answer := answer_of(heard)):
             self._mute_s = None
             return self._reading(answer)
-        self._tally.count(f"no answer to a command within {1000 * patience_s:.0f} ms; went on without")
+        self._talk.tally.count(f"no answer to a command within {1000 * patience_s:.0f} ms; went on without")
         self._mute_s = asked_s if self._mute_s is None else self._mute_s
         if self._line.clock_s() - self._mute_s > LOST_S:
             self._armed = False
@@ -144,14 +136,15 @@ class SerialBench:
                 return
             raise LostError("closed, and nobody confirmed that it was vented", file=self._line.name)
         self._armed = False
-        answer = self._insist(VENT, b"", "vent")
+        answer = self._talk.insist(VENT, b"", "vent")
+        self._reading(answer)
         if answer.code != 0:
             raise LostError("the DAC does not acknowledge, so nobody knows its output", file=self._line.name,
                             hint="take the pressure away by hand")  # fmt: skip
         self._vented = True
 
     def faults(self) -> list[Fault]:
-        return self._tally.take(self._wire)
+        return self._talk.tally.take(self._talk.wire)
 
     def close(self) -> None:
         if self._closed:
@@ -160,58 +153,6 @@ class SerialBench:
             self.vent()
         self._closed = True
         self._line.close()
-
-    def _say_hello(self) -> Hello:
-        line, began = self._line, self._line.clock_s()
-        line.read(0.0)
-        garbage_since = math.inf
-        while (now := line.clock_s()) - began < BOOT_S and now - garbage_since < GARBAGE_S:
-            payload = self._ask(HELLO, b"", 2 * TRY_S)
-            if payload is not None and (hello := hello_of(payload)):
-                self._tally.start(self._wire)
-                return hello
-            if self._wire.decoder.garbage:
-                garbage_since = min(garbage_since, now)
-        if garbage := self._wire.decoder.garbage:
-            raise BenchError(
-                f"no valid frame in {line.clock_s() - began:.0f} s, but {garbage} bytes of something else",
-                file=line.name,
-                hint="is this the Nano, and is benchlab's firmware on it? see docs/firmware.md",
-            )
-        raise BenchError(
-            f"no valid frame in {line.clock_s() - began:.0f} s: nothing answers",
-            file=line.name,
-            hint="is the firmware on it (`benchlab bench firmware`), and is this the Nano's port?",
-        )
-
-    def _check_hello(self) -> None:
-        if self._hello.protocol != PROTOCOL:
-            raise BenchError(
-                f"its firmware {self._hello.version} speaks protocol {self._hello.protocol}, this benchlab {PROTOCOL}",
-                file=self._line.name,
-                hint="write this benchlab's firmware with `benchlab bench firmware` and flash it",
-            )
-
-    def _insist(self, command: int, payload: bytes, what: str) -> Answer:
-        """Ask up to TRIES times; LostError if nobody answers."""
-        for _ in range(TRIES):
-            heard = self._ask(command, payload, TRY_S)
-            if heard is not None and (answer := answer_of(heard)):
-                self._reading(answer)
-                return answer
-            self._tally.count(f"no answer to `{what}`; asked again")
-        raise LostError(f"nobody answered `{what}` in {TRIES * TRY_S:g} s", file=self._line.name,
-                        hint="vent by hand; the firmware vents by itself once it hears nothing")  # fmt: skip
-
-    def _ask(self, command: int, payload: bytes, timeout_s: float) -> bytes | None:
-        """Send, and wait for the answer to this and no other; None where it does not come in time."""
-        line = self._line
-        line.write(self._wire.ask(command, payload))
-        until = line.clock_s() + timeout_s
-        while (left := until - line.clock_s()) > 0:
-            if (heard := self._wire.hear(line.read(left))) is not None:
-                return heard
-        return None
 
     def _follow(self, time_s: float) -> None:
         """Keep the period of the exchanges; where time is virtual, let the device run until now."""
@@ -233,7 +174,7 @@ class SerialBench:
         if answer.micros < self._micros:
             self._turns += 1
         self._micros = answer.micros
-        self._tally.device(answer.crc_errors, answer.dropped)
+        self._talk.tally.device(answer.crc_errors, answer.dropped)
         return Reading(
             math.nan if bench.monitor is None else bench.monitor.of(answer.monitor / steps),
             answer.flex / steps,

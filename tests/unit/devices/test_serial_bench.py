@@ -11,11 +11,14 @@ from pathlib import Path
 import pytest
 
 from benchlab.bench import Bench, LimitError, Line
-from benchlab.devices import serial_bench
+from benchlab.devices import conversation
 from benchlab.devices.emulated import LockstepTransport
 from benchlab.devices.emulator import Emulator
 from benchlab.devices.interface import LostError, Status
+from benchlab.devices.messages import Answer
 from benchlab.devices.serial_bench import SerialBench
+from benchlab.devices.tally import Tally
+from benchlab.devices.wire import Wire
 from benchlab.errors import BenchError
 from tests.unit.devices.faulty_line import FaultyLine
 from tests.unit.devices.nano import BENCH, needs_emulator
@@ -74,10 +77,9 @@ def test_without_a_monitor_pressure_is_missing(line: FaultyLine) -> None:
 
 def test_its_clock_goes_on_where_the_nanos_begins_again() -> None:
     """The Nano's microseconds begin again after 71.6 minutes."""
-    from benchlab.devices.messages import Answer
-
     device = object.__new__(SerialBench)
-    device._bench, device._hello, device._tally = BENCH, type("H", (), {"adc_samples": 8})(), serial_bench.Tally()
+    device._bench, device._hello = BENCH, type("H", (), {"adc_samples": 8})()
+    device._talk = conversation.Conversation(Babble())
     device._boot = device._turns = device._micros = 0
     device._armed = True
     times = [device._reading(Answer(0, 0, 0, 1, us, 0, 0, 0)).device_time_s for us in (4_294_960_000, 2704)]
@@ -101,7 +103,7 @@ def test_a_firmware_with_a_higher_ceiling_is_told(line: FaultyLine) -> None:
 
 
 def test_another_protocol_is_refused(line: FaultyLine, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(serial_bench, "PROTOCOL", 9)
+    monkeypatch.setattr(conversation, "PROTOCOL", 9)
     with pytest.raises(BenchError, match=r"firmware 1.0.0 speaks protocol 1, this benchlab 9; .*bench firmware"):
         SerialBench(line, BENCH)
 
@@ -123,8 +125,8 @@ class Babble:
 
     name, about = "COM7", dict
 
-    def __init__(self) -> None:
-        self.now, self.noise, self.closed = 0.0, random.Random(1), False
+    def __init__(self, size: int = 10_000) -> None:
+        self.now, self.noise, self.closed, self.size = 0.0, random.Random(1), False, size
 
     def clock_s(self) -> float:
         return self.now
@@ -135,7 +137,7 @@ class Babble:
 
     def read(self, timeout_s: float) -> bytes:
         self.now += 0.02
-        return self.noise.randbytes(10_000)
+        return self.noise.randbytes(self.size)
 
     def close(self) -> None:
         self.closed = True
@@ -148,6 +150,14 @@ def test_garbage_is_told_after_2_s_and_the_port_let_go() -> None:
     ):
         SerialBench(line, BENCH)
     assert line.closed
+
+
+def test_a_few_words_of_a_bootloader_are_no_garbage() -> None:
+    """It answers a few bytes to what is no sketch, at its own baud, and the firmware comes after up to 2 s."""
+    line = Babble(size=0)
+    line.read = lambda timeout_s: setattr(line, "now", line.now + timeout_s) or (b"\x14\x10" if line.now < 2 else b"")
+    with pytest.raises(BenchError, match=r"no valid frame in 4 s: nothing answers"):
+        SerialBench(line, BENCH)
 
 
 @pytest.mark.parametrize(
@@ -285,7 +295,7 @@ def test_it_waits_as_long_as_its_rate_allows(line: FaultyLine) -> None:
 
 def test_the_nanos_counters_begin_again() -> None:
     """At 65535 they begin again at 0; after a boot too."""
-    tally, wire = serial_bench.Tally(), serial_bench.Wire()
+    tally, wire = Tally(), Wire()
     for crc_errors in (65530, 65533, 2, 4, 65000, 7):
         tally.device(crc_errors, 0)
     (fault,) = tally.take(wire)

@@ -1,0 +1,87 @@
+"""Commands and their answers over a line: who waits how long, what is asked again, and the hello that a bench is opened with."""
+
+from __future__ import annotations
+
+import math
+
+from benchlab.devices.interface import LostError
+from benchlab.devices.messages import HELLO, PROTOCOL, Answer, Hello, answer_of, hello_of
+from benchlab.devices.tally import Tally
+from benchlab.devices.transport import Transport
+from benchlab.devices.wire import Wire
+from benchlab.errors import BenchError
+
+BOOT_S = 4.0
+"""A Nano resets when its port is opened, and its bootloader waits up to 2 s for a new sketch."""
+
+GARBAGE_S = 2.0
+MUCH_GARBAGE = 200
+"""Bytes; more than a bootloader says."""
+
+HELLO_S = 0.2
+TRY_S = 0.1
+TRIES = 5
+
+
+class Conversation:
+    """One side of a line to a Nano. tally: what went wrong on it."""
+
+    def __init__(self, line: Transport) -> None:
+        self.line, self.wire, self.tally = line, Wire(), Tally()
+
+    def ask(self, command: int, payload: bytes, timeout_s: float) -> bytes | None:
+        """Send, and wait for the answer to this and no other; None where it does not come in time."""
+        line = self.line
+        line.write(self.wire.ask(command, payload))
+        until = line.clock_s() + timeout_s
+        while (left := until - line.clock_s()) > 0:
+            if (heard := self.wire.hear(line.read(left))) is not None:
+                return heard
+        return None
+
+    def insist(self, command: int, payload: bytes, what: str) -> Answer:
+        """Ask up to TRIES times. LostError if nobody answers."""
+        for _ in range(TRIES):
+            heard = self.ask(command, payload, TRY_S)
+            if heard is not None and (answer := answer_of(heard)):
+                return answer
+            self.tally.count(f"no answer to `{what}`; asked again")
+        raise LostError(
+            f"nobody answered `{what}` in {TRIES * TRY_S:g} s",
+            file=self.line.name,
+            hint="vent by hand; the firmware vents by itself once it hears nothing",
+        )
+
+    def greet(self) -> Hello:
+        """What the firmware says of itself, once it has booted. BenchError where nothing answers, or no firmware of this protocol."""
+        line, began = self.line, self.line.clock_s()
+        line.read(0.0)
+        garbage_since = math.inf
+        while (now := line.clock_s()) - began < BOOT_S and now - garbage_since < GARBAGE_S:
+            payload = self.ask(HELLO, b"", HELLO_S)
+            if payload is not None and (hello := hello_of(payload)):
+                self.tally.start(self.wire)
+                return self._of_this_protocol(hello)
+            if self.wire.decoder.garbage > MUCH_GARBAGE:
+                garbage_since = min(garbage_since, now)
+        garbage, waited = self.wire.decoder.garbage, f"no valid frame in {line.clock_s() - began:.0f} s"
+        if garbage > MUCH_GARBAGE:
+            raise BenchError(
+                f"{waited}, but {garbage} bytes of something else",
+                file=line.name,
+                hint="is this the Nano, and is benchlab's firmware on it? see docs/firmware.md",
+            )
+        raise BenchError(
+            f"{waited}: nothing answers",
+            file=line.name,
+            hint="is the firmware on it (`benchlab bench firmware`), and is this the Nano's port?",
+        )
+
+    def _of_this_protocol(self, hello: Hello) -> Hello:
+        if hello.protocol != PROTOCOL:
+            raise BenchError(
+                f"its firmware {hello.version} speaks protocol {hello.protocol}, this benchlab {PROTOCOL}",
+                file=self.line.name,
+                hint="write this benchlab's firmware with `benchlab bench firmware` and flash it",
+            )
+        return hello
