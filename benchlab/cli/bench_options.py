@@ -24,13 +24,14 @@ def bench_option(
     """`--bench`, as `bench`. also: further kinds that this command knows, as `replay:FILE`. default None: it must be given, unless
     required is False."""
     kinds = f"{BENCHES} | {also}" if also else BENCHES
+    wanted = default is None if required is None else required
+    said: dict[str, Any] = {} if default is None else {"default": default, "show_default": True}
     return click.option(
         "--bench",
         metavar="BENCH",
-        required=default is None if required is None else required,
-        default=default,
-        show_default=default is not None,
+        required=wanted,
         help=f"{kinds}. `benchlab bench ports` lists the ports. A twin is simulated, and what it writes says so.",
+        **said,  # click takes a default of None for one
     )
 
 

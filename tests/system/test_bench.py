@@ -56,6 +56,12 @@ def test_vent_does_not_wait_for_a_calibration_that_can_be_read(benchlab, calibra
     assert done.code == 3 and "vented: the DAC holds code 0" in done.err and "left.yaml" in done.err
 
 
+def test_a_bench_must_be_said(benchlab) -> None:
+    for command in ("vent", "monitor"):
+        done = benchlab("bench", command)
+        assert done.code == 2 and "Missing option '--bench'" in done.err
+
+
 def test_a_replay_is_no_bench(benchlab) -> None:
     for command in ("vent", "monitor"):
         done = benchlab("bench", command, "--bench", "replay:x.journal")
