@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -33,15 +34,27 @@ def write_results(path: Path, out: Path | None = None, overwrite: bool = False) 
     journal = read_journal(path)
     if not len(journal.samples):
         raise InputError("holds no sample", file=path, hint="the run ended before its first tick was answered")
-    drive_file, table, picture = outputs
-    write_drive_file(drive_file, journal, {"file": path.name, "sha256": sha256(path)})
-    write_drive_csv(table, journal)
-    with written_whole(picture) as temporary:
-        try:
-            save_png(draw_drive_figure(journal), temporary)
-        except OSError as error:
-            raise cannot_write(error, picture) from error
+    _write_together(journal, path, outputs)
     return {"journal": str(path), **summary(journal), "outputs": [str(output) for output in outputs]}
+
+
+def _write_together(journal: Journal, path: Path, outputs: list[Path]) -> None:
+    """Make all files in a hidden folder and move them to their places: all, or none where the disk refuses."""
+    folder = outputs[0].parent
+    try:
+        with tempfile.TemporaryDirectory(dir=folder, prefix=f".{path.stem[:40]}-") as hidden:
+            stage = [Path(hidden, output.name) for output in outputs]
+            drive_file, table, picture = stage
+            write_drive_file(drive_file, journal, {"file": path.name, "sha256": sha256(path)})
+            write_drive_csv(table, journal)
+            with written_whole(picture) as temporary:
+                save_png(draw_drive_figure(journal), temporary)
+            for made, output in zip(stage, outputs):
+                made.replace(output)
+    except OSError as error:
+        raise cannot_write(error, folder) from error
+    except InputError as error:
+        raise InputError(error.what, file=folder, hint=error.hint) from error
 
 
 def summary(journal: Journal) -> dict[str, Any]:

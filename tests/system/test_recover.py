@@ -120,10 +120,11 @@ def test_a_head_from_elsewhere_without_a_plan_is_enough(benchlab, tmp_path: Path
     assert "\x1b" not in done.err
 
 
-def test_a_disk_that_is_full_leaves_the_journal_and_no_half_file(journal: Path) -> None:
+@pytest.mark.parametrize("limit", [5_000, 36_000, 60_000])
+def test_a_disk_that_is_full_leaves_the_journal_and_no_other_file(journal: Path, limit: int) -> None:
     code = (
         "import resource, signal, sys; signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
-        "resource.setrlimit(resource.RLIMIT_FSIZE, (5_000, 5_000))\n"
+        f"resource.setrlimit(resource.RLIMIT_FSIZE, ({limit}, {limit}))\n"
         "from benchlab.cli.app import run; run(['recover', sys.argv[1]])\n"
     )
     done = subprocess.run([sys.executable, "-c", code, str(journal)], capture_output=True, text=True, check=False)
