@@ -48,8 +48,8 @@ class Margins:
 
 @dataclass(frozen=True)
 class Tuning:
-    """Gains, how they were found, and what they have. closed_loop_s: SIMC's τc. lead_s: the plant's median lag and dead time, the preview for a feed-forward.
-    margins: at each operating point, in their order; worst: index of the one with the largest Ms."""
+    """Gains, how they were found, and what they have. closed_loop_s: SIMC's τc. lead_s: the plant's median lag and dead time, the preview
+    for a feed-forward. margins: at each operating point, in their order; worst: index of the one with the largest Ms."""
 
     kp_MPa_per_deg: float
     ki_MPa_per_deg_s: float
@@ -108,20 +108,16 @@ def tune(
 ) -> Tuning:
     """SIMC gains for a plant known at several operating points, safe at all of them.
 
-    The rule gets the largest gain, the longest dead time and the median lag. To each dead time of the plant one and a half periods of the
-    loop are added: the pressure is held between ticks, and is found from the angle of the tick before. τc is the shortest with which Ms is at most max_sensitivity at every operating point: for
-    one plant about its dead time, which is SIMC's choice for fast control. closed_loop_s: τc as it is wished; it is
-    refused where Ms is larger than that.
+    The rule is applied to the operating point at which its own choice, τc = L, allows the least kp. To each dead time of the plant one
+    and a half periods of the loop are added: the pressure is held between ticks, and is found from the angle of the tick before. τc is
+    the shortest with which Ms is at most max_sensitivity at every operating point: for one plant about its dead time, which is
+    SIMC's choice for fast control. closed_loop_s: τc as it is wished; it is refused where Ms is larger than that.
 
     Raises InputError for no plant, for one with a gain, lag or dead time that no bench has, and where no gains are safe.
     """
     _check(plants)
     held = [Lag(p.gain_deg_per_MPa, p.lag_s, p.dead_time_s + LOOP_PERIODS / rate_Hz) for p in plants]
-    one = Lag(
-        max(p.gain_deg_per_MPa for p in held),
-        float(np.median([p.lag_s for p in held])),
-        max(p.dead_time_s for p in held),
-    )
+    one = min(held, key=lambda plant: simc(plant, plant.dead_time_s)[0])
     lead = float(np.median([p.lag_s + p.dead_time_s for p in plants])) + 0.5 / rate_Hz
     if closed_loop_s is not None:
         found = _tuned(one, held, closed_loop_s, lead)

@@ -116,9 +116,10 @@ class Tuned:
         }
 
 
-def tuned() -> Tuned:
-    """From a fresh bench to gains, on the twin that comes with benchlab."""
-    twin, plan, bench = read_twin(None), read_protocol("flex_calibration"), replace(twin_bench(), flex=None)
+def tuned(twin: TwinSettings | None = None) -> Tuned:
+    """From a fresh bench to gains; on the twin that comes with benchlab where None."""
+    twin = read_twin(None) if twin is None else twin
+    plan, bench = read_protocol("flex_calibration"), replace(twin_bench(), flex=None)
     seen = run(plan, replace(twin, seed=CALIBRATION_SEED), bench)
     flex = calibrate_flex(seen["time_s"], seen["command_MPa"], seen["flex_V"], seen["time_s"], seen.true_deg)
     bench = replace(bench, flex=flex.bench_line)
@@ -289,6 +290,22 @@ def windup(known: Tuned) -> None:
         print(f"  {name:28} {np.sqrt(np.mean(error**2)):6.2f}° {np.abs(error).max():6.2f}°")
 
 
+def slower(seeds: int) -> None:
+    """A regulator that is several times as slow, with line and gains found on it."""
+    twin = read_twin(None)
+    print(f"\nslower regulators, each tuned anew, ± 47.5°, worst of {seeds} seeds: R², RMSE")
+    for factor in (2, 5, 10):
+        lag = twin.effects["regulator_lag"]
+        changed = replace(lag, **{"lag_s": factor * lag.lag_s})
+        known = tuned(replace(twin, effects={**twin.effects, lag.name: changed}))
+        words = []
+        for name in ("PI", "PI + feed-forward"):
+            plan = sine(amplitude_deg=PAPER_AMPLITUDE_DEG)
+            found = judged(plan, known.twin, known.bench, known.makers()[name], seeds)
+            words.append(f"{name} {found.r_squared:.4f} {found.rmse_deg:5.2f}°")
+        print(f"  {factor * lag.lag_s:.2f} s: {', '.join(words)}")
+
+
 def variants(known: Tuned, seeds: int) -> None:
     """Of the feed-forward: without preview, with the error against the plant's own response, with the reference of the tick before."""
     tuning, top = known.tuning, known.bench.ceiling_MPa
@@ -359,6 +376,7 @@ def main() -> None:
     print(f"by hand: kp {HAND[0]:g}, ki {HAND[1]:g}")
     controllers(known, seeds)
     robustness(known, max(3, seeds // 4))
+    slower(max(2, seeds // 4))
     variants(known, max(3, seeds // 4))
     windup(known)
     true_margins(known)
