@@ -29,19 +29,24 @@ class Answers:
     def ask(self, question: str) -> str:
         """The answer to a question, which is shown on standard error. UsageError where standard input has ended."""
         click.echo(f"{question} ", nl=False, err=True)
-        while b"\n" not in self._read:
-            if not self._ready():
-                continue
-            more = os.read(_input(), 4096)
-            if not more:
-                click.echo(err=True)
-                raise UsageError(
-                    "standard input ended before all was answered; vented, nothing written",
-                    hint="call it from a terminal, or give --readings FILE",
-                )
-            self._read += more
+        try:
+            while b"\n" not in self._read:
+                if self._ready():
+                    self._read += self._more()
+        except BaseException:
+            click.echo(err=True)  # what is said next begins a line
+            raise
         line, _, self._read = self._read.partition(b"\n")
         return line.decode("utf-8", "replace").strip()
+
+    def _more(self) -> bytes:
+        more = os.read(_input(), 4096)
+        if not more:
+            raise UsageError(
+                "standard input ended before all was answered; vented, nothing written",
+                hint="call it from a terminal, or give --readings FILE",
+            )
+        return more
 
     def _ready(self) -> bool:
         self.check()
