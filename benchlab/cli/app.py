@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import sys
@@ -28,7 +29,7 @@ from benchlab.cli.simulate import simulate
 from benchlab.cli.stats import stats
 from benchlab.cli.study import study
 from benchlab.cli.sweep import sweep
-from benchlab.errors import BenchlabError, printable
+from benchlab.errors import BenchlabError, InputError, printable
 
 EXIT_BUG, EXIT_INTERRUPTED = 1, 130
 
@@ -124,12 +125,21 @@ def run(arguments: list[str] | None = None) -> None:
     except Exception as error:
         if debug:
             raise
+        if isinstance(error, OSError) and error.errno == errno.ENOSPC:
+            sys.exit(_full())
         what = f"{type(error).__name__}: {printable(error)}"
         click.echo(f"benchlab: this is a bug in benchlab: {what}; run again with --debug and report it", err=True)
         if as_json:
             _print_json({"error": {"code": EXIT_BUG, "what": what, "file": None, "where": None, "hint": "report it"}})
         code = EXIT_BUG
     sys.exit(code)
+
+
+def _full() -> int:
+    """Standard output goes to a disk that is full; files of ours say so themselves."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    click.echo("benchlab: disk full: what stands on standard output is not whole; free some space", err=True)
+    return InputError.exit_code
 
 
 def _say(error: BenchlabError, as_json: bool) -> None:

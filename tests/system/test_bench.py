@@ -137,6 +137,14 @@ def test_ports_are_listed(benchlab, monkeypatch) -> None:
     assert done.code == 0 and "no serial port" in done.err
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full, which is a full disk")
+def test_a_full_disk_behind_standard_output_is_no_bug() -> None:
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run([sys.executable, "-m", "benchlab", "bench", "ports", "--json"], stdout=full, stderr=subprocess.PIPE,
+                              text=True, check=False)  # fmt: skip
+    assert done.returncode == 3 and done.stderr.startswith("benchlab: disk full") and "Traceback" not in done.stderr
+
+
 def test_bad_inputs_130_a_port_that_is_missing_or_no_port(benchlab, tmp_path: Path) -> None:
     for command in ("vent", "monitor"):
         done = benchlab("bench", command, "--bench", "serial:/dev/ttyNONE")
