@@ -20,8 +20,8 @@ from benchlab.cli.design import design
 from benchlab.cli.export import export
 from benchlab.cli.fit_material import fit_material
 from benchlab.cli.force import force
-from benchlab.cli.recover import recover
 from benchlab.cli.protocol import protocol
+from benchlab.cli.recover import recover
 from benchlab.cli.report import report
 from benchlab.cli.run import run as run_protocol
 from benchlab.cli.sample_data import sample_data
