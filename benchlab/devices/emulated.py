@@ -6,7 +6,7 @@ import typing
 from pathlib import Path
 
 from benchlab.bench import Bench
-from benchlab.devices.emulator import Emulator
+from benchlab.devices.emulator import NOMINAL_FLEX, NOMINAL_MONITOR, Emulator
 from benchlab.devices.serial_bench import SerialBench
 from benchlab.devices.transport import SerialTransport
 
@@ -57,6 +57,16 @@ class PtyTransport(SerialTransport):
     def close(self) -> None:
         super().close()
         self.emulator.close()
+
+
+def emulated_bench() -> Bench:
+    """The calibration of the emulation where none is given: exact, as its regulator and sensors are made after it.
+
+    >>> bench = emulated_bench()
+    >>> bench.code(0.35), bench.monitor.of(5.0), bench.flex.of(2.6)
+    (2986, 0.48, 110.0)
+    """
+    return Bench("emulated", monitor=NOMINAL_MONITOR, flex=NOMINAL_FLEX, gauge="none: simulated", calibrated=True)
 
 
 def open_emulated(bench: Bench, lockstep: bool, log: Path | None = None) -> SerialBench:

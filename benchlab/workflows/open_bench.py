@@ -73,8 +73,8 @@ def twin_of(spec: Spec, seed: int | None = None, actuator: Actuator | None = Non
 def bench_of(spec: Spec, calibration: Path | None = None, twin: TwinSettings | None = None) -> Bench:
     """What the bench may be asked for: its calibration file's, or what there is without one. Opens no port.
 
-    A twin without a file has the calibration that a twin is made with, a replay the one of its run. InputError for a bench of metal with
-    the calibration of a twin.
+    A twin or an emulation without a file has the calibration that it is made with, a replay the one of its run. InputError for a
+    bench of metal with the calibration of a twin.
     """
     from benchlab.io.bench_file import is_simulated, read_bench
 
@@ -88,6 +88,10 @@ def bench_of(spec: Spec, calibration: Path | None = None, twin: TwinSettings | N
         from benchlab.devices.twin.bench import twin_bench
 
         return twin_bench(twin or twin_of(spec))
+    if spec.kind == "emulated":
+        from benchlab.devices.emulated import emulated_bench
+
+        return emulated_bench()
     if spec.kind == "replay":
         return _recorded_bench(Path(spec.where))
     return read_bench(None)

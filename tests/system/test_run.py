@@ -156,7 +156,7 @@ REFUSED = [
     (["short.yaml", "--name", "taken"], 2, "taken.h5: exists, and measured data is never replaced"),
     (["short.yaml", "--calibration", "none.yaml"], 2, "none.yaml: no such file"),
     (["loop.yaml"], 3, "give --control"),
-    (["loop.yaml", "--bench", "emulated"], 3, "is not calibrated"),
+    (["loop.yaml", "--bench", "serial:none"], 3, "is not calibrated"),
     (["short.yaml", "--bench", "replay:none.journal"], 2, "none.journal: no such file"),
     (["short.yaml", "--curve", "a.csv", "--design", "tw3_slw10"], 2, "both give a response curve"),
 ]
@@ -271,6 +271,8 @@ def test_the_firmware_itself_runs_a_protocol(tmp_path: Path, short: Path, benchl
     journal = read_journal(tmp_path / "a.journal")
     assert len(journal.samples) == 801 and journal.header["device"]["firmware"]
     assert journal.samples["code"].max() > 2500 and journal.samples["code"][-1] == 0
+    assert 0.29 < np.nanmax(journal.samples["pressure_MPa"]) < 0.36  # its regulator, monitor and actuator live
+    assert 90 < np.nanmax(journal.samples["angle_deg"]) < 115
 
 
 def test_a_film_of_the_twin_is_drawn_when_asked_for(tmp_path: Path, benchlab: Any) -> None:
