@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 GUIDES = "\n".join(
     (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8")
-    for name in ("see", "measure", "predict", "compare", "studies", "report", "firmware", "bench")
+    for name in ("see", "measure", "predict", "compare", "studies", "report", "firmware", "bench", "protocols")
 )
 SHELL = "\n".join(re.findall(r"```sh\n(.*?)```", README + GUIDES, re.DOTALL))
 COMMANDS = sorted(set(re.findall(r"benchlab [a-z][^&\n]*", SHELL)))
@@ -31,6 +31,7 @@ REFUSE_TO_REPLACE = (
     "export",
     "fit-material",
     "force",
+    "protocol show",
     "stats",
     "study new",
 )
