@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benchlab.devices.interface import Fault, Status
+from benchlab.devices.interface import Fault, LostError, Status
 from benchlab.errors import UsageError
 from benchlab.runner.clock import VirtualClock
 from benchlab.runner.end import RunEnd
@@ -204,11 +204,11 @@ def test_a_sensor_without_noise_at_rest_is_not_stuck() -> None:
 
 
 def test_a_sensor_that_answers_late_after_a_long_hold_is_not_stuck() -> None:
-    quantized = lagging(0.1)
+    answers: list[tuple[float, float]] = [(0.0, 1.0)] * 5
 
     def change(n: int, fields: Fields) -> None:
-        quantized(n, fields)
-        fields["pressure_MPa"], fields["flex_V"] = round(fields["pressure_MPa"], 3), round(fields["flex_V"], 2)
+        answers.append((round(fields["pressure_MPa"], 3), round(fields["flex_V"], 2)))
+        fields["pressure_MPa"], fields["flex_V"] = answers.pop(0)
 
     assert run(change, np.repeat([0.0, 0.3, 0.0, 0.3], 500)).reason == "completed"
 
@@ -247,6 +247,21 @@ def test_faults_stop_at_a_rate_and_not_before() -> None:
     assert every(12).reason == "completed"
     end = every(8)
     assert end.reason == "faults" and "21 faults on the line in 2 s, more than 20" in end.cause.words
+
+
+def test_a_line_that_stays_silent_is_called_lost_by_the_device_and_not_faulty() -> None:
+    device = FakeDevice()
+
+    def mute(n: int, fields: Fields) -> None:
+        if n >= 200:
+            fields.update(status=Status.NO_ANSWER, pressure_MPa=math.nan, flex_V=math.nan)
+            device.pending.append(Fault("no answer"))
+        if n == 250:
+            raise LostError("no answer for 0.5 s")
+
+    device.change = mute
+    end = execute(plan_of(ramp(6.0)), device, BENCH, FakeJournal(), VirtualClock())
+    assert end.reason == "lost" and end.ticks == 250 and "no answer for 0.5 s" in end.cause.words
 
 
 def test_a_guard_whose_sensor_is_not_there_is_not_there() -> None:
