@@ -11,6 +11,7 @@ from scipy.stats import norm
 from benchlab.control.first_order import Fit, fit
 from benchlab.control.holds import find_holds
 from benchlab.control.straight_line import Interval
+from benchlab.control.tuning import Lag
 from benchlab.errors import InputError
 from benchlab.units import FloatArray
 
@@ -49,6 +50,11 @@ class Plant:
     samples: int
     start_s: float
     end_s: float
+
+    @property
+    def cautious(self) -> Lag:
+        """The ends of the intervals for which gains must be least: large gain, long dead time, short lag."""
+        return Lag(self.gain_deg_per_MPa.high, self.lag_s.low, self.dead_time_s.high)
 
 
 @dataclass(frozen=True)

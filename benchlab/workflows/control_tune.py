@@ -11,7 +11,7 @@ import numpy as np
 
 import benchlab
 from benchlab.control.plant import Identification, identify
-from benchlab.control.tuning import MAX_SENSITIVITY, Lag, Tuning, tune
+from benchlab.control.tuning import MAX_SENSITIVITY, Tuning, tune
 from benchlab.errors import InputError, UsageError, counted
 from benchlab.io.control_file import control_of_tuning, write_control
 from benchlab.io.files import check_new_file, sha256
@@ -42,7 +42,7 @@ def tune_from_run(
     angle = np.where(np.isnan(run.column("reference_deg")), run.column("angle_deg"), np.nan)
     try:
         found = identify(run.column("time_s"), run.column("command_MPa"), angle)
-        plants = [Lag(p.gain_deg_per_MPa.value, p.lag_s.value, p.dead_time_s.value) for p in found.plants]
+        plants = [plant.cautious for plant in found.plants]
         tuning = tune(plants, run.rate_Hz, closed_loop_s, max_sensitivity)
     except InputError as error:
         raise InputError(error.what, file=source, where=error.where, hint=error.hint) from error

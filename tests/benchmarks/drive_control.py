@@ -23,7 +23,7 @@ from benchlab.control.flex import FlexCalibration, calibrate_flex
 from benchlab.control.pi import PI
 from benchlab.control.plant import Identification, identify
 from benchlab.control.tracking import Tracking, track
-from benchlab.control.tuning import Lag, Tuning, tune
+from benchlab.control.tuning import Tuning, tune
 from benchlab.devices.twin.bench import twin_bench
 from benchlab.devices.twin.twin import Twin
 from benchlab.io.journal import SAMPLE
@@ -125,8 +125,7 @@ def tuned(twin: TwinSettings | None = None) -> Tuned:
     bench = replace(bench, flex=flex.bench_line)
     seen = run(plan, replace(twin, seed=IDENTIFICATION_SEED), bench)
     plant = identify(seen["time_s"], seen["command_MPa"], seen["angle_deg"])
-    lags = [Lag(p.gain_deg_per_MPa.value, p.lag_s.value, p.dead_time_s.value) for p in plant.plants]
-    return Tuned(bench, twin, flex, plant, tune(lags, plan.rate_Hz))
+    return Tuned(bench, twin, flex, plant, tune([each.cautious for each in plant.plants], plan.rate_Hz))
 
 
 def sine(frequency_Hz: float = 0.2, amplitude_deg: float = 30.0) -> Plan:

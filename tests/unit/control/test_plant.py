@@ -7,6 +7,7 @@ from scipy.integrate import solve_ivp
 from benchlab.control.first_order import response
 from benchlab.control.holds import find_holds
 from benchlab.control.plant import identify
+from benchlab.control.tuning import Lag, margins, tune
 from benchlab.errors import InputError
 
 DT = 0.01
@@ -79,6 +80,21 @@ def test_a_sweep_gives_the_slopes_of_its_curve() -> None:
             0.06, abs=0.03
         )
         assert plant.gain_deg_per_MPa.value == pytest.approx(500 - 1200 * plant.pressure_MPa, rel=0.02)
+
+
+def test_gains_are_tuned_for_the_cautious_ends_of_the_intervals() -> None:
+    """A sine hardly tells lag from dead time; what it leaves open must not become a gain."""
+    t = np.arange(0, 40, DT)
+    u = 0.15 * (1 - np.cos(2 * np.pi * 0.4 * t))
+    lag, dead, gain = 0.05, 0.04, 300.0
+    for seed in range(5):
+        angle = gain * response(t, u, lag, dead) + np.random.default_rng(seed).normal(0, 0.3, len(t))
+        plants = identify(t, u, angle).plants
+        for plant in plants:
+            assert plant.cautious.dead_time_s >= plant.dead_time_s.value
+        tuned = tune([plant.cautious for plant in plants], 100)
+        true = margins(tuned.kp_MPa_per_deg, tuned.ki_MPa_per_deg_s, Lag(gain, lag, dead + 0.015))
+        assert true.stable and true.max_sensitivity < 1.6
 
 
 def test_missing_angles_are_left_out() -> None:
