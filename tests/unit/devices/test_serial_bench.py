@@ -9,6 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from benchlab.bench import Bench, LimitError, Line
 from benchlab.devices import conversation
@@ -221,6 +223,34 @@ def test_thousands_of_faults_never_give_more_than_was_asked(
     line.up.clear()
     device.vent()
     assert emulator.tell("state").code == 0
+
+
+faults = st.sampled_from(["ok", "ok", "lose", "double", "flip", "cut", "noise", "late", "swap"])
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.lists(st.tuples(faults, faults, st.floats(0, 0.35)), min_size=1, max_size=40), st.integers(0, 1000))
+def test_whatever_the_line_does(said: list[tuple[str, str, float]], seed: int) -> None:
+    """Never more than was asked, every tick without an answer told with a cause, and a vent at the end that is confirmed."""
+    own = Emulator(BENCH, lockstep=True)
+    line = FaultyLine(LockstepTransport(own), seed)
+    device = SerialBench(line, BENCH)
+    device.arm()
+    asked = [0]
+    for tick, (down, up, pressure) in enumerate(said):
+        line.down.append(down)
+        line.up.append(up)
+        asked.append(BENCH.code(pressure))
+        reading = device.exchange(tick / 100, pressure if device._armed else 0.0)
+        assert own.tell("state").code <= max(asked)
+        assert reading.code in {-1, *range(max(asked) + 1)}
+        assert causes(device) or not reading.status & Status.NO_ANSWER
+    line.down.clear()
+    line.up.clear()
+    device.vent()
+    assert own.tell("state").code == 0
+    assert [r.status for r in ramp(device, line, 3, len(said), 0.0)] == [Status(0)] * 3
+    device.close()
 
 
 def test_no_answer_for_half_a_second_is_lost(line: FaultyLine) -> None:
