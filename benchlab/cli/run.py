@@ -128,7 +128,7 @@ def _tell_plan(found: dict[str, Any]) -> None:
         *([f"  gains: {found['control']}"] if found["control"] else []),
         *(f"  warning: {warning}" for warning in found["warnings"]),
         *(f"  would write {path}" for path in found["would_write"]),
-        "dry run: no port was opened and nothing was written",
+        "dry run complete: no port was opened and nothing was written",
     ]
     for line in lines:
         click.echo(printable(line), err=True)

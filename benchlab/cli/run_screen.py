@@ -50,7 +50,7 @@ class Screen:
         parts += [f"measured {measured:.3f} MPa"] if math.isfinite(measured) else []
         wanted = f" of {reference:.1f}°" if math.isfinite(reference) else ""
         parts += [f"{angle:.1f}°{wanted}"] if math.isfinite(angle) else []
-        parts += [f"at most {1e3 * self.most_late_s:.1f} ms late"]
+        parts += [f"at most {1e3 * self.most_late_s:.1f} ms late"] if self.most_late_s else []
         return ", ".join(parts)
 
     def hint(self) -> str:

@@ -17,7 +17,19 @@ ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 GUIDES = "\n".join(
     (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8")
-    for name in ("see", "measure", "predict", "compare", "studies", "report", "firmware", "bench", "protocols")
+    for name in (
+        "see",
+        "measure",
+        "predict",
+        "compare",
+        "studies",
+        "report",
+        "firmware",
+        "bench",
+        "twin",
+        "protocols",
+        "drive",
+    )
 )
 SHELL = "\n".join(re.findall(r"```sh\n(.*?)```", README + GUIDES, re.DOTALL))
 COMMANDS = sorted(set(re.findall(r"benchlab [a-z][^&\n]*", SHELL)))
