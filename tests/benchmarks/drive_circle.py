@@ -1,12 +1,10 @@
 """The closed loop, through the command line: protocol → twin → drawn film → `benchlab analyze` → angle against the twin's truth.
 
-`python tests/benchmarks/drive_circle.py` prints what is reached; `--effects` draws docs/images/twin_effects.png. The film starts at the
-camera's trigger, whose time is in the journal: a frame at t of the film is at trigger + t of the run. No fit of any offset.
+`python tests/benchmarks/drive_circle.py` prints what is reached. The film starts at the camera's trigger, whose time is in the journal: a frame at t of the film is at trigger + t of the run. No fit of any offset.
 """
 
 from __future__ import annotations
 
-import argparse
 import json
 import subprocess
 import sys
@@ -138,13 +136,6 @@ def rows() -> list[Row]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--effects", action="store_true", help="draw docs/images/twin_effects.png instead")
-    if parser.parse_args().effects:
-        from twin_effects_figure import draw
-
-        print(f"wrote {draw()}")
-        return
     for bar, figure, met in rows():
         print(f"{'met' if met else 'NOT MET' if met is False else '':8} {bar}: {figure}")
 

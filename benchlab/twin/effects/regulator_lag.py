@@ -3,9 +3,9 @@
     τ·dp_reg/dt = e − p_reg          e: what the regulator is after
     e moves only when |p_set − e| > b, and then stays b behind (backlash); p_set = 0 opens the exhaust: e = 0
 
-τ `lag_s`: chosen 0.03 s. The maker of the paper's regulator (SMC, ITV1000 series) gives a response of about 0.1 s without load for
-a step, which is three time constants; nothing was measured. b `deadband_MPa`: chosen 0.0005 MPa, half of the maker's sensitivity of
-0.2 % of the full scale of 0.5 MPa. The way up and the way down lie 2·b apart. Exact for a command that is held between two exchanges.
+τ `lag_s`: chosen 0.03 s, so that a step is nearly done after 0.1 s, the order of electro-pneumatic regulators without load.
+b `deadband_MPa`: chosen 0.0005 MPa, a thousandth of a full scale of 0.5 MPa. Neither was measured, nor are they the paper's.
+The way up and the way down lie 2·b apart. Exact for a command that is held between two exchanges.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@
 
 σ `flex_sd_V`, `monitor_sd_V`: of one conversion, chosen 6 mV and 5 mV, about one step of the converter (S/1024 = 4.9 mV); not measured.
 n `samples`: chosen 16. With noise of about a step, the mean of many conversions is finer than a step (dither); with none it is not.
-S: supply, 5 V. The ½ puts a code in the middle of its step. Source of the converter: ATmega328P datasheet, section 24.
+S: supply, 5 V. The ½ puts a code in the middle of its step. Source of the converter: ATmega328P datasheet.
 Numbers come from numpy's PCG64 by the twin's seed, the same for the same order of exchanges.
 """
 

@@ -6,7 +6,8 @@ u: angle so far in the chain, the measure of strain. On the first loading u = m 
 (softer), most at half of m, and the way back up joins the first one at m. W: way that u has gone below m, up and down; D grows
 with it, so that each cycle to m bends a little more than the last, by c in all, most of it in the first n cycles.
 s `softer`: chosen 0.06. c `growth`: chosen 0.03. n `cycles`: chosen 2. Not measured.
-Sources: Mullins 1969 (Rubber Chem. Technol. 42, 339); Diani, Fayolle, Gilormini 2009 (Eur. Polym. J. 45, 601). The parabola is our choice.
+Sources: Mullins 1969 (Rubber Chem. Technol. 42, 339); of polyurethanes Qi and Boyce 2005 (Mechanics of Materials 37, 817).
+The parabola is our choice.
 Off in the twin that comes with benchlab.
 """
 

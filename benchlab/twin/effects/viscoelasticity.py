@@ -5,8 +5,8 @@
 u: angle of the response curve at the pressure inside, which is where θ comes to rest. a_i `share_1`, `share_2`; τ_i `time_1_s`,
 `time_2_s`. After a step of u from 0 the angle creeps as u·(1 − a1·exp(−t/τ1) − a2·exp(−t/τ2)); in a cycle it lags, and the loop is
 widest where the cycle's period is about 2π·τ_i (standard linear solid, one for each term: Prony series; Ferry, Viscoelastic Properties
-of Polymers, 1980). Chosen, not measured: a1 = 0.04 with 0.3 s, a2 = 0.03 with 8 s, a few per cent as thermoplastic polyurethanes show in
-tests of seconds to minutes. Exact for an angle u that goes straight within a step.
+of Polymers, 1980). That thermoplastic polyurethanes lag, creep and soften: Qi and Boyce 2005 (Mechanics of Materials 37, 817). The
+values are chosen, not measured: a1 = 0.04 with 0.3 s, a2 = 0.03 with 8 s. Exact for an angle u that goes straight within a step.
 """
 
 from __future__ import annotations
