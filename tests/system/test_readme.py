@@ -29,6 +29,7 @@ GUIDES = "\n".join(
         "twin",
         "protocols",
         "drive",
+        "runs",
     )
 )
 SHELL = "\n".join(re.findall(r"```sh\n(.*?)```", README + GUIDES, re.DOTALL))
@@ -105,6 +106,11 @@ def test_command_of_readme(command: str, clone: Path, benchlab, monkeypatch: pyt
         (first,) = [c for c in COMMANDS if c.startswith("benchlab calibrate")]
         assert benchlab(*shlex.split(first)[1:]).code == 0
     words = shlex.split(command)[1:]
+    if "--name" in words:  # a run is never replaced
+        for old in (clone / "results").glob(f"{words[words.index('--name') + 1]}.*"):
+            old.unlink()
+    if words[0] == "recover" and not (clone / words[1]).exists():
+        _run_ramp(benchlab)
     refuses = words[0] in REFUSE_TO_REPLACE or " ".join(words[:2]) in REFUSE_TO_REPLACE
     done = benchlab(*words, *(["--overwrite"] if refuses else []))
     assert done.code == 0, done.err
@@ -116,10 +122,36 @@ def test_the_python_of_the_guide_runs(clone: Path, benchlab, monkeypatch: pytest
     (clone / "results").mkdir(exist_ok=True)
     (first,) = [c for c in COMMANDS if c == "benchlab analyze sample_data/videos/tw9_slw10_s1.mp4 --out results"]
     benchlab(*shlex.split(first)[1:])
-    (code,) = re.findall(r"```python\n(.*?)```", GUIDES, re.DOTALL)
+    (code,) = _python_of("see")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert 1.0 < float(done.stdout.split()[0]) < 2.0
+
+
+def test_the_python_about_runs_runs(clone: Path, benchlab, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(clone)
+    (clone / "results").mkdir(exist_ok=True)
+    if not (clone / "results" / "ramp.h5").exists():
+        _run_ramp(benchlab)
+    (code,) = _python_of("runs")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    angle, *words = done.stdout.split()
+    assert 90 < float(angle) < 130 and words == ["deg", "angle_deg"]
+
+
+def test_no_other_guide_has_python_that_is_not_run() -> None:
+    assert len(re.findall(r"```python\n", README + GUIDES)) == 2
+
+
+def _python_of(guide: str) -> list[str]:
+    return re.findall(r"```python\n(.*?)```", (ROOT / "docs" / f"{guide}.md").read_text(encoding="utf-8"), re.DOTALL)
+
+
+def _run_ramp(benchlab) -> None:
+    """The run that the guide about runs begins with."""
+    (command,) = [c for c in COMMANDS if "--name ramp" in c]
+    assert benchlab(*shlex.split(command)[1:]).code == 0
 
 
 def test_the_test_command_is_what_ci_runs() -> None:
