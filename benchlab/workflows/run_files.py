@@ -47,7 +47,7 @@ def _results(prepared: Prepared, driven: Driven) -> list[str]:
         path = prepared.path(".truth.csv")
         write_truth_csv(path, driven.truth)
         made.append(str(path))
-    if prepared.settings.video:
+    if prepared.settings.video and prepared.twin is not None:
         from benchlab.workflows.twin_film import write_twin_film
 
         path = prepared.path(".mp4")
