@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -31,6 +32,8 @@ def write_results(path: Path, out: Path | None = None, overwrite: bool = False) 
         if output.resolve() == path.resolve():
             raise UsageError("is read here and would be replaced", file=output, hint="give the journal another name")
         check_new_file(output, overwrite)
+    if not os.access(outputs[0].absolute().parent, os.W_OK | os.X_OK):
+        raise UsageError("the output folder is read-only", file=outputs[0].parent, hint="choose another --out")
     journal = read_journal(path)
     if not len(journal.samples):
         raise InputError("holds no sample", file=path, hint="the run ended before its first tick was answered")

@@ -132,11 +132,14 @@ def test_a_disk_that_is_full_leaves_the_journal_and_no_other_file(journal: Path,
     assert names(journal.parent) == ["trial.journal"]
 
 
-@pytest.mark.skipif(os.geteuid() == 0, reason="the super-user may write anywhere")
-def test_a_folder_that_is_read_only_is_refused(benchlab, journal: Path, tmp_path: Path) -> None:
-    (tmp_path / "locked").mkdir(mode=0o500)
-    done = benchlab("recover", journal, "--out", tmp_path / "locked")
-    assert done.code == 3 and "cannot write here" in done.err
+def test_a_folder_that_is_read_only_is_refused_before_anything_is_read(
+    benchlab, journal: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(os, "access", lambda path, mode: not mode & os.W_OK)
+    done = benchlab("recover", journal)
+    assert (
+        done.code == 2 and "the output folder is read-only" in done.err and names(journal.parent) == ["trial.journal"]
+    )
 
 
 def drive_of(folder: Path, angles_deg: np.ndarray, delay_s: float, measured: bool = True) -> Path:
