@@ -23,7 +23,7 @@ from benchlab.devices.messages import (
 from benchlab.devices.transport import SerialTransport, Transport
 from benchlab.errors import BenchError
 
-PATIENCE = 0.8
+PATIENCE = 0.9
 """Of the time between exchanges: how long an exchange waits for its answer."""
 
 LOST_S = 0.5
@@ -33,7 +33,7 @@ WHOLE_CLOCK = 1 << 32
 class SerialBench:
     """The device of `interface`, disarmed. Made by saying hello; BenchError where nothing that fits answers.
 
-    An exchange waits for its answer for 0.8 of the time between exchanges and gives NO_ANSWER after that; LostError once nothing was
+    An exchange waits for its answer for 0.9 of the time between exchanges and gives NO_ANSWER after that; LostError once nothing was
     answered for 0.5 s. Nothing is sent twice but hello, arm and vent. A reboot is not mended: open the bench again.
     """
 

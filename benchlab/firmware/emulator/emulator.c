@@ -21,6 +21,7 @@
 #define _GNU_SOURCE
 #include <math.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -363,6 +364,7 @@ static void live(int pty) /* in real time; time that the computer spent elsewher
     char line[256];
     uint8_t bytes[256];
     double began = monotonic_s();
+    (void)setpriority(PRIO_PROCESS, 0, -10); /* where it may: a real Nano does not wait for the computer's other work */
     for (;;) {
         struct pollfd fds[2] = {{.fd = pty, .events = POLLIN}, {.fd = STDIN_FILENO, .events = POLLIN}};
         struct timespec patience = {0, 250000};

@@ -165,13 +165,13 @@ def test_a_few_words_of_a_bootloader_are_no_garbage() -> None:
 @pytest.mark.parametrize(
     ("way", "fault", "cause", "answered"),
     [
-        ("down", "lose", "no answer to a command within 8 ms", False),
+        ("down", "lose", "no answer to a command within 9 ms", False),
         ("down", "flip", "the device heard a command with a wrong checksum", False),
         ("down", "cut", "the device heard an old, unfinished or unreadable command", False),
         ("down", "double", "an answer that came late, or twice", True),
-        ("down", "late", "no answer to a command within 8 ms", False),
+        ("down", "late", "no answer to a command within 9 ms", False),
         ("down", "swap", "the device heard an old, unfinished or unreadable command", False),
-        ("up", "lose", "no answer to a command within 8 ms", False),
+        ("up", "lose", "no answer to a command within 9 ms", False),
         ("up", "flip", "an answer with a wrong checksum", False),
         ("up", "cut", "an answer with a wrong checksum", False),
         ("up", "double", "an answer that came late, or twice", True),
@@ -320,7 +320,7 @@ def test_it_waits_as_long_as_its_rate_allows(line: FaultyLine) -> None:
         device.exchange(0.2 + tick / 50, 0.05)
     line.up.append("lose")
     device.exchange(0.2 + 60 / 50, 0.05)
-    assert "no answer to a command within 16 ms; went on without" in causes(device)
+    assert "no answer to a command within 18 ms; went on without" in causes(device)
 
 
 def test_the_nanos_counters_begin_again() -> None:
