@@ -14,9 +14,14 @@ from benchlab.io.drive_file import read_drive_file
 from benchlab.io.journal import read_journal
 from benchlab.io.protocol_file import read_protocol, shipped_protocols
 from benchlab.io.response_file import CURVES
+from benchlab.runner.stop import Stop
+from benchlab.twin.effects.catalogue import EFFECTS
+from benchlab.twin.effects.catalogue import FAULTS as FAULTS_OF_TWIN
 from benchlab.workflows import run as run_workflow
 from benchlab.workflows import run_prepare
+from benchlab.workflows.run import Driven
 from benchlab.workflows.run_curve import simulated_curve
+from benchlab.workflows.run_prepare import RunSettings
 from tests.unit.devices.nano import needs_emulator
 
 SHORT = """\
@@ -51,15 +56,16 @@ def left(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir()) if folder.exists() else []
 
 
+def driven(folder: Path, protocol: str, **settings: Any) -> Driven:
+    """A run up to its journal `a.journal`, without the files that are made of it."""
+    prepared = run_prepare.prepare(protocol, RunSettings(out=folder, name="a", fast=True, **settings))
+    return run_workflow.drive(prepared, Stop())
+
+
 @pytest.mark.parametrize("name", sorted(shipped_protocols()))
-def test_each_shipped_protocol_runs_to_its_end_on_the_twin(tmp_path: Path, benchlab: Any, name: str) -> None:
-    done = benchlab("run", name, "--fast", "--out", tmp_path, "--name", "a", "--json")
-    plan = read_protocol(name)
-    assert done.code == 0, done.err
-    found = done.json
-    assert (found["reason"], found["vented"], found["ticks"]) == ("completed", True, len(plan.time_s))
-    assert left(tmp_path) == ["a.csv", "a.h5", "a.journal", "a.png", "a.truth.csv"]
-    assert sorted(Path(path).name for path in found["outputs"]) == left(tmp_path)
+def test_each_shipped_protocol_runs_to_its_end_on_the_twin(tmp_path: Path, name: str) -> None:
+    end, plan = driven(tmp_path, name).end, read_protocol(name)
+    assert (end.reason, end.vented, end.ticks) == ("completed", True, len(plan.time_s)), end.cause
     journal = read_journal(tmp_path / "a.journal")
     assert journal.samples["tick"].tolist() == list(range(len(plan.time_s)))
     open_loop = np.isfinite(plan.pressure_MPa)
@@ -68,6 +74,25 @@ def test_each_shipped_protocol_runs_to_its_end_on_the_twin(tmp_path: Path, bench
     marks = [e for e in journal.events if e["kind"] in ("mark", "trigger")]
     assert [(e["kind"], e["text"]) for e in marks] == [(e.kind, e.text) for e in plan.events]
     assert journal.stop and journal.stop["vented"]
+
+
+def test_the_command_says_how_it_ended_and_what_it_wrote(tmp_path: Path, benchlab: Any) -> None:
+    done = benchlab("run", "linear_ramp", "--fast", "--out", tmp_path, "--name", "a", "--json")
+    found = done.json
+    assert done.code == 0 and (found["reason"], found["vented"], found["exit_code"]) == ("completed", True, 0), done.err
+    assert found["ticks"] == found["ticks_planned"] == 501 and found["late_ms"] is None and found["warnings"] == []
+    assert left(tmp_path) == ["a.csv", "a.h5", "a.journal", "a.png", "a.truth.csv"]
+    assert sorted(Path(path).name for path in found["outputs"]) == left(tmp_path)
+    assert "completed: to the end of the plan" in done.err and "in virtual time; vented" in done.err
+    assert "error" not in found
+
+
+@pytest.mark.parametrize("name", ["linear_ramp", "multi_rate_loading", "repeatability", "sine_tracking"])
+def test_no_guard_stops_a_healthy_twin_with_every_effect_on(tmp_path: Path, name: str) -> None:
+    twin = tmp_path / "twin.yaml"
+    twin.write_text("effects:\n" + "".join(f"  {effect}: on\n" for effect in EFFECTS if effect not in FAULTS_OF_TWIN))
+    end = driven(tmp_path, name, bench=f"twin:{twin}").end
+    assert end.completed, end.cause
 
 
 def test_the_head_tells_all_that_is_needed_to_run_it_again(tmp_path: Path, short: Path, benchlab: Any) -> None:
