@@ -125,7 +125,7 @@ def _parsed(path: Path, text: str, lines: dict[Place, int]) -> Any:
             where=f"line {mark.line + 1}" if mark else None,
             hint="indent with blanks, write each key once as `key: value`, and quote text with special signs",
         ) from None
-    except (YAMLError, ValueError, OverflowError) as error:
+    except (YAMLError, ValueError, OverflowError, LookupError) as error:  # an empty `!!int` has no first letter
         raise InputError(f"not YAML: {str(error).splitlines()[0]}", file=path) from None
     _check_plain(path, data, (), lines)
     return data

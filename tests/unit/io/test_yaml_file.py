@@ -67,6 +67,7 @@ def test_reads_yaml_1_2_into_the_model(tmp_path: Path) -> None:
         ("# only a comment\n", ["no data"]),
         (b"name: \xff\xfe", ["UTF-8"]),
         ("name: a\x00b\n", ["not YAML"]),
+        (GOOD + "count: !!int ''\n", ["not YAML"]),
     ],
 )
 def test_refuses_with_the_line(tmp_path: Path, text: str | bytes, words: list[str]) -> None:
