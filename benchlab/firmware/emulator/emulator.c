@@ -19,17 +19,17 @@
  */
 
 #define _GNU_SOURCE
+#include <fcntl.h>
 #include <math.h>
 #include <poll.h>
-#include <sys/resource.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <termios.h>
 #include <time.h>
 #include <unistd.h>
-#include <fcntl.h>
 
 #include <simavr/avr_adc.h>
 #include <simavr/avr_extint.h>
@@ -56,7 +56,10 @@ static uint8_t feed[1 << 17], said[1 << 17];
 static unsigned feed_at, feed_end, said_end, triggers;
 static avr_cycle_count_t next_feed, last_said;
 
-static struct { unsigned code, memory, here, skip, selected, reading, index; uint8_t bytes[8]; } dac = {.here = 1, .memory = 0x800, .code = 0x800};
+static struct {
+    unsigned code, memory, here, skip, selected, index;
+    uint8_t bytes[8];
+} dac = {.code = 0x800, .memory = 0x800, .here = 1}; /* as delivered: half of full scale at power-on */
 static struct { double volts; avr_cycle_count_t at; } regulator;
 static struct { double offset_mV, gain, held_mV; } sensor[2];
 
