@@ -97,6 +97,11 @@ def test_one_plant_gets_what_the_rule_says_with_the_loops_own_dead_time() -> Non
     assert found.kp_MPa_per_deg / found.ki_MPa_per_deg_s == pytest.approx(0.3)
 
 
+def test_the_rule_is_applied_where_it_allows_least() -> None:
+    found = tune([Lag(200.0, 0.5, 0.02), Lag(400.0, 0.05, 0.02)], 100)
+    assert found.kp_MPa_per_deg / found.ki_MPa_per_deg_s == pytest.approx(0.05)  # the second's lag
+
+
 def test_a_wished_time_is_kept_or_refused() -> None:
     assert tune([Lag(300.0, 0.3, 0.05)], 100, closed_loop_s=0.5).closed_loop_s == 0.5
     with pytest.raises(InputError, match=r"closed-loop time of 0\.001 s gives Ms"):
