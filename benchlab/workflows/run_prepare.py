@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import glob
 import hashlib
 import math
 import os
@@ -31,6 +30,9 @@ BYTES_A_TICK, ROOM_BYTES = 600, 20_000_000
 """Of journal and results together, as an upper bound; and what is kept free beside them."""
 
 LONGEST_NAME = 200
+
+SUFFIXES = (".journal", ".h5", ".csv", ".png", ".truth.csv", ".mp4")
+"""Of the files of a run."""
 
 
 @dataclass(frozen=True)
@@ -88,8 +90,8 @@ class Prepared:
     @property
     def suffixes(self) -> tuple[str, ...]:
         """Of the files that will be written."""
-        truth = (".truth.csv",) if self.spec.kind == "twin" else ()
-        return (".journal", ".h5", ".csv", ".png", *truth, *((".mp4",) if self.settings.video else ()))
+        left_out = {".truth.csv": self.spec.kind != "twin", ".mp4": not self.settings.video}
+        return tuple(suffix for suffix in SUFFIXES if not left_out.get(suffix))
 
     def path(self, suffix: str) -> Path:
         return self.stem.with_name(self.stem.name + suffix)
@@ -150,10 +152,10 @@ def check_room(stem: Path, plan: Plan) -> None:
         raise UsageError("no such folder", file=folder.parent, hint="make it, or choose another --out")
     if not os.access(there, os.W_OK | os.X_OK):
         raise UsageError("the output folder is read-only", file=there, hint="choose another --out")
-    for path in sorted(there.glob(f"{glob.escape(stem.name)}.*")) if there is folder else []:
-        raise UsageError(
-            "exists, and measured data is never replaced", file=path, hint="choose another --name or --out"
-        )
+    for suffix in SUFFIXES:
+        if (path := stem.with_name(stem.name + suffix)).exists():
+            hint = "choose another --name or --out"
+            raise UsageError("exists, and measured data is never replaced", file=path, hint=hint)
     free, need = shutil.disk_usage(there).free, BYTES_A_TICK * len(plan.time_s) + ROOM_BYTES
     if free < need:
         what = f"disk full: {free / 1e6:.0f} MB free, {need / 1e6:.0f} MB are kept for a run of this length"

@@ -14,13 +14,14 @@ from benchlab.io.drive_file import read_drive_file
 from benchlab.io.journal import read_journal
 from benchlab.io.protocol_file import read_protocol, shipped_protocols
 from benchlab.io.response_file import CURVES
-from benchlab.runner.stop import Stop
+from benchlab.runner.stop import QUIT, Stop
 from benchlab.twin.effects.catalogue import EFFECTS
 from benchlab.twin.effects.catalogue import FAULTS as FAULTS_OF_TWIN
 from benchlab.workflows import run as run_workflow
 from benchlab.workflows import run_prepare
 from benchlab.workflows.run import Driven
 from benchlab.workflows.run_curve import simulated_curve
+from benchlab.workflows.run_files import written
 from benchlab.workflows.run_prepare import RunSettings
 from tests.unit.devices.nano import needs_emulator
 
@@ -77,8 +78,10 @@ def test_each_shipped_protocol_runs_to_its_end_on_the_twin(tmp_path: Path, name:
 
 
 def test_the_command_says_how_it_ended_and_what_it_wrote(tmp_path: Path, benchlab: Any) -> None:
+    (tmp_path / "a.yaml").write_text("not one of ours")
     done = benchlab("run", "linear_ramp", "--fast", "--out", tmp_path, "--name", "a", "--json")
     found = done.json
+    (tmp_path / "a.yaml").unlink()
     assert done.code == 0 and (found["reason"], found["vented"], found["exit_code"]) == ("completed", True, 0), done.err
     assert found["ticks"] == found["ticks_planned"] == 501 and found["late_ms"] is None and found["warnings"] == []
     assert left(tmp_path) == ["a.csv", "a.h5", "a.journal", "a.png", "a.truth.csv"]
@@ -322,6 +325,38 @@ def test_results_that_cannot_be_made_leave_the_journal_and_say_how_to_make_them(
     done = benchlab("run", short, "--fast", "--out", tmp_path, "--name", "a", "--json")
     assert done.code == 3 and done.json["reason"] == "completed" and done.json["error"]["code"] == 3
     assert "benchlab recover" in done.err and left(tmp_path) == ["a.journal", "short.yaml"]
+
+
+def test_a_wish_to_stop_before_the_first_tick_arms_and_vents_and_asks_for_nothing(tmp_path: Path) -> None:
+    stop = Stop()
+    stop.ask(QUIT)
+    prepared = run_prepare.prepare("linear_ramp", RunSettings(out=tmp_path, name="a", fast=True))
+    done = run_workflow.drive(prepared, stop)
+    found = written(prepared, done)
+    assert (found["reason"], found["ticks"], found["exit_code"], found["vented"]) == ("quit", 0, 130, True)
+    assert left(tmp_path) == ["a.journal"] and "holds no sample" in found["warnings"][-1]
+
+
+@needs_emulator
+def test_a_bench_that_is_unplugged_is_lost_and_its_vent_is_not_claimed(
+    tmp_path: Path, short: Path, benchlab: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from benchlab.devices.serial_bench import SerialBench
+
+    exchange = SerialBench.exchange
+
+    def unplugged(self: SerialBench, time_s: float, *rest: Any) -> Any:
+        if time_s > 0.5:
+            self._line.emulator.close()
+        return exchange(self, time_s, *rest)
+
+    monkeypatch.setattr(SerialBench, "exchange", unplugged)
+    done = benchlab("run", short, "--bench", "emulated", "--out", tmp_path, "--name", "a", "--json")
+    found = done.json
+    assert (done.code, found["reason"], found["vented"]) == (5, "lost", False), done.err
+    assert 45 <= found["ticks"] < 110 and found["time_s"] < 3
+    assert "NOT CONFIRMED VENTED" in done.err and "relief valve" in done.err
+    assert (tmp_path / "a.h5").exists()
 
 
 def test_a_bug_is_told_as_one_after_the_bench_was_vented(
