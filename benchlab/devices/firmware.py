@@ -22,4 +22,8 @@ def firmware_text(bench: Bench) -> str:
         f"/* codes above are refused: {bench.ceiling_MPa:.4g} MPa, {bench.volts(bench.ceiling_code):.3f} V"
         f" at a supply of {bench.supply_V:g} V */"
     )
-    return re.sub(r"(#define CEILING_CODE )\d+ +/\*.*?\*/", rf"\g<1>{bench.ceiling_code} {says}", text, count=1)
+    line = rf"\g<1>{bench.ceiling_code} {says}"
+    written, count = re.subn(r"(#define CEILING_CODE )\d+ +/\*.*?\*/", line, text)
+    if count != 1:
+        raise ValueError(f"{count} ceilings in {SKETCH}.ino")
+    return written
