@@ -12,7 +12,7 @@ from benchlab.workflows.run_prepare import Prepared
 
 
 def written(prepared: Prepared, driven: Driven) -> dict[str, Any]:
-    """Write run file, table, picture and, of a twin, its truth and, if asked for, its film from the journal; what `--json` prints.
+    """Write drive file, table, picture and, of a twin, its truth and, if asked for, its film from the journal; what `--json` prints.
 
     The journal stays whatever happens. What cannot be made of it is a warning, and exit code 3 where the run itself ended well.
     """
