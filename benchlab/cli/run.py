@@ -68,10 +68,10 @@ def run(protocol: str, dry_run: bool, quiet: bool, as_json: bool, **options: Any
 
     \b
     Writes into --out, never over a file that is there:
-      NAME.journal  every tick, as it was measured; `benchlab recover` makes the others from it
-      NAME.h5       the drive file (HDF5, NXdata): pressure asked for and measured, angle, lateness, events, all settings
-      NAME.csv      the same, a row a tick
-      NAME.png      pressure and angle against time
+      NAME.journal    every tick, as it was measured; `benchlab recover` makes the others from it
+      NAME.h5         the drive file (HDF5, NXdata): pressure asked for and measured, angle, lateness, events, all settings
+      NAME.csv        the same, a row a tick
+      NAME.png        pressure and angle against time
       NAME.truth.csv  of a twin: what was really there
 
     \b

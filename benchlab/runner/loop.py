@@ -70,7 +70,7 @@ class Loop:
         rows = zip(plan.time_s.tolist(), plan.step.tolist(), plan.pressure_MPa.tolist(), plan.reference_deg.tolist())
         for index, (time_s, step, pressure, reference) in enumerate(rows):
             cause = self._wait(time_s + self.shift_s)
-            if cause is None and self.stop.paused:
+            if cause is None and self.stop.paused and index:  # before the first tick there is nothing to hold
                 cause = self._pause(index, time_s)
             if cause is not None:
                 return cause
@@ -113,7 +113,7 @@ class Loop:
         began = self.clock.now_s()
         self.journal.event("pause", tick=index, time_s=began)
         try:
-            cause = self._hold(max(0, index - 1), began)
+            cause = self._hold(index - 1, began)
         finally:
             now = self.clock.now_s()
             self.paused_s += now - began

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from benchlab.errors import BenchlabError, InputError
+from benchlab.errors import BenchError, BenchlabError, InputError
 from benchlab.io.nexus import plain
 from benchlab.workflows.drive_outputs import write_results
 from benchlab.workflows.run import Driven
@@ -29,12 +29,14 @@ def written(prepared: Prepared, driven: Driven) -> dict[str, Any]:
         "bench": str(prepared.spec),
         **end.record(),
         "late_ms": None if prepared.fast else end.late_ms,
-        "exit_code": end.exit_code or (InputError.exit_code if troubles else 0),
+        "exit_code": BenchError.exit_code
+        if driven.left
+        else end.exit_code or (InputError.exit_code if troubles else 0),
         "warnings": warnings,
         "outputs": outputs,
     }
     if found["exit_code"]:
-        words = f"{end.reason}: {end.cause.words}" if not end.completed else " ".join(troubles)
+        words = driven.left or (" ".join(troubles) if end.completed else f"{end.reason}: {end.cause.words}")
         found["error"] = {"code": found["exit_code"], "what": words, "file": None, "where": None, "hint": None}
     return {name: plain(value) for name, value in found.items()}
 
@@ -64,6 +66,8 @@ def _doubts(prepared: Prepared, driven: Driven) -> list[str]:
         found.append(f"{end.faults} faults on the way, each in the journal with its cause")
     if not end.vented:
         found.append(f"nobody confirmed the vent: {end.vent_words}")
+    if driven.left:
+        found.append(driven.left)
     if limited := getattr(controller, "limited", 0):
         found.append(f"the controller was at a limit of pressure in {limited} ticks")
     return found

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from benchlab.devices.interface import Reading, Status
 from benchlab.io.design_file import read_design
 from benchlab.io.drive_file import read_drive_file
 from benchlab.io.journal import read_journal
@@ -19,6 +20,7 @@ from benchlab.twin.effects.catalogue import EFFECTS
 from benchlab.twin.effects.catalogue import FAULTS as FAULTS_OF_TWIN
 from benchlab.workflows import run as run_workflow
 from benchlab.workflows import run_prepare
+from benchlab.workflows.open_bench import Spec, twin_of
 from benchlab.workflows.run import Driven
 from benchlab.workflows.run_curve import simulated_curve
 from benchlab.workflows.run_files import written
@@ -140,6 +142,20 @@ def test_a_closed_loop_reaches_its_angle(tmp_path: Path, benchlab: Any) -> None:
     samples = read_journal(tmp_path / "out" / "a.journal").samples
     assert samples["angle_deg"][-50:].mean() == pytest.approx(60, abs=1.0)
     assert np.isnan(samples["reference_deg"][:50]).all() and (samples["reference_deg"][100:] == 60).all()
+
+
+def test_gains_come_from_a_file_too_and_their_rate_is_compared(tmp_path: Path, benchlab: Any) -> None:
+    (tmp_path / "loop.yaml").write_text("\n".join(line for line in LOOP.splitlines() if "control:" not in line))
+    gains = "from: by hand\nrate_Hz: 50\ngains: {kp_MPa_per_deg: 0.0005, ki_MPa_per_deg_s: 0.01}\nfeed_forward: true\n"
+    (tmp_path / "gains.yaml").write_text(gains)
+    words = ("--fast", "--control", tmp_path / "gains.yaml", "--out", tmp_path, "--json")
+    done = benchlab("run", tmp_path / "loop.yaml", *words, "--name", "a")
+    assert done.code == 0 and "the gains are for 50 Hz, and the plan runs at 100 Hz" in done.err
+    journal = read_journal(tmp_path / "a.journal")
+    assert journal.samples["angle_deg"][-50:].mean() == pytest.approx(60, abs=0.5)
+    assert journal.header["control"]["feed_forward"] is True and journal.header["control"]["ki_MPa_per_deg_s"] == 0.01
+    done = benchlab("run", "linear_ramp", *words, "--name", "b")
+    assert done.code == 0 and "--control is not used: no step is closed-loop" in done.err
 
 
 def test_a_dry_run_says_what_would_run_and_opens_nothing(
@@ -357,6 +373,35 @@ def test_a_bench_that_is_unplugged_is_lost_and_its_vent_is_not_claimed(
     assert 45 <= found["ticks"] < 110 and found["time_s"] < 3
     assert "NOT CONFIRMED VENTED" in done.err and "relief valve" in done.err
     assert (tmp_path / "a.h5").exists()
+
+
+def test_a_bench_of_metal_that_does_not_empty_is_told_after_a_run_that_completed(
+    tmp_path: Path, benchlab: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A twin stands in for it: after the vent its monitor goes on showing 0.1 MPa."""
+    from benchlab.devices.twin.bench import twin_bench
+    from benchlab.devices.twin.twin import Twin
+    from benchlab.workflows import bench_vent
+
+    twin = Twin(twin_of(Spec("twin")), twin_bench())
+    exchange, vented = twin.exchange, []
+
+    def blocked(time_s: float, *rest: Any) -> Any:
+        if not vented:
+            return exchange(time_s, *rest)
+        return Reading(0.1, 1.0, 0, time_s, Status(0))
+
+    monkeypatch.setattr(twin, "exchange", blocked)
+    monkeypatch.setattr(bench_vent, "WAIT_S", 0.2)
+    monkeypatch.setattr(run_workflow, "check_zero", lambda *_: None)
+    monkeypatch.setattr(run_workflow, "open_bench", lambda *_, **__: twin)
+    monkeypatch.setattr(twin, "vent", lambda: vented.append(True))
+    (tmp_path / "tiny.yaml").write_text(
+        "title: Tiny\nlimit_MPa: 0.35\nsegments:\n  - ramp: {to_MPa: 0.1, duration_s: 0.3}\n"
+    )
+    done = benchlab("run", tmp_path / "tiny.yaml", "--bench", "serial:x", "--out", tmp_path, "--name", "a", "--json")
+    assert done.code == 5 and done.json["reason"] == "completed", done.err
+    assert "the monitor shows 100.0 kPa" in done.err and "relief valve" in done.json["error"]["what"]
 
 
 def test_a_bug_is_told_as_one_after_the_bench_was_vented(
