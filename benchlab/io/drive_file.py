@@ -149,7 +149,7 @@ def origin(header: Mapping[str, Any]) -> str:
     made_on = device.get("replayed") if isinstance(device, dict) else None
     kind = str(made_on or header.get("bench_kind", ""))
     words = {"twin": "simulated (twin)", "emulated": "emulated bench, nothing was measured"}.get(kind, "")
-    return f"replay{' of a run, ' * bool(words)}{words}" if made_on else words
+    return ", ".join(["replay of a run", *([words] if words else [])]) if made_on else words
 
 
 def origin_words(header: Mapping[str, Any], before: str = "") -> str:

@@ -26,7 +26,7 @@ def read_driven_pressure(path: Path) -> DrivenPressure:
     run = read_drive_file(path)
     warnings = [f"{path.name}: {words}" for words in run.losses_told]
     if words := origin(run.header):
-        warnings.append(f"the pressure of {path.name} is not of a bench of metal: {words}")
+        warnings.append(f"{path.name} is no run on a bench of metal: {words}")
     field = "pressure_MPa"
     if not np.isfinite(run.samples[field]).any():
         field = "command_MPa"

@@ -69,7 +69,7 @@ def _of_drive(path: Path, target: Target) -> Readings:
     run = read_drive_file(path)
     samples, stop = run.samples, run.stop or {"reason": "no record of its end"}
     origin_told = origin(run.header)
-    warnings = [f"its numbers are not of a bench of metal: {origin_told}"] if origin_told else []
+    warnings = [f"no run on a bench of metal: {origin_told}"] if origin_told else []
     warnings += ["its angle is by the flex sensor, not from a film"]
     if stop["reason"] != "completed":
         warnings.append(f"the run was not completed: {stop['reason']}")

@@ -122,7 +122,7 @@ def test_a_file_of_a_twin_says_so_in_its_title(tmp_path):
         assert file["entry/drive/title"][()].decode() == "Two triangles, simulated (twin)"
     twin_replayed = {"bench_kind": "replay", "device": {"kind": "replay", "replayed": "twin"}}
     assert origin(twin_replayed) == "replay of a run, simulated (twin)"
-    assert origin({"bench_kind": "replay", "device": {"replayed": "serial"}}) == "replay"
+    assert origin({"bench_kind": "replay", "device": {"replayed": "serial"}}) == "replay of a run"
 
 
 def test_a_run_without_a_sample_and_with_a_bare_head(tmp_path):

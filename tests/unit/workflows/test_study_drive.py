@@ -35,7 +35,7 @@ def test_each_cycle_has_its_angle_on_the_way_up(tmp_path):
 
 def test_a_twin_a_stop_and_a_missing_end_are_told(tmp_path):
     told = readings(tmp_path, kind="twin", stop={"reason": "interrupted", "vented": True}).warnings
-    assert told[0] == "its numbers are not of a bench of metal: simulated (twin)"
+    assert told[0] == "no run on a bench of metal: simulated (twin)"
     assert told[-1] == "the run was not completed: interrupted"
     (tmp_path / "run.journal").unlink()
     assert readings(tmp_path, stop=None).warnings[-1] == "the run was not completed: no record of its end"
