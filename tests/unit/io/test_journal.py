@@ -18,6 +18,7 @@ from benchlab.errors import InputError, UsageError
 from benchlab.io import journal as journal_module
 from benchlab.io import journal_format
 from benchlab.io.journal import KINDS, SAMPLE, UNITS, JournalWriter, read_journal, still_written
+from benchlab.protocol.survey import MAX_TICKS
 from tests.unit.io.journals import STOP, header_of, samples_of, write_journal
 
 EVENTS = {
@@ -210,6 +211,10 @@ def test_a_file_that_is_too_large_is_refused_before_it_is_read(tmp_path):
         file.truncate(journal_module.MAX_BYTES + 1)
     with pytest.raises(InputError, match="1000 MB, more than the limit"):
         read_journal(path)
+
+
+def test_the_longest_plan_makes_a_journal_that_is_read():
+    assert MAX_TICKS * (SAMPLE.itemsize + 14) < journal_module.MAX_BYTES / 2
 
 
 def test_a_file_made_to_be_slow_is_given_up(whole, monkeypatch):
