@@ -34,6 +34,7 @@ from benchlab.twin.settings import Camera, TwinSettings, default_effects
 
 SHIPPED_CURVE = "tw3_slw10"
 LENGTH_MM = 180.0
+CURVE_SUFFIXES = (".h5", ".csv")
 
 
 def _switched(value: Any) -> Any:
@@ -83,6 +84,7 @@ class _Twin(Document):
 def read_twin(path: Path | None) -> TwinSettings:
     """The twin of a file, or where None the one that comes with benchlab: tw 3 mm, slw 10 mm, typical effects, seed 1.
 
+    A file of `benchlab simulate` (.h5, .csv) is that twin with another curve.
     Raises UsageError and InputError, with the line of everything that is wrong.
 
     >>> list(read_twin(None).effects)[:3]
@@ -90,6 +92,9 @@ def read_twin(path: Path | None) -> TwinSettings:
     """
     if path is None:
         return TwinSettings(shipped_curve(), design=SHIPPED_CURVE)
+    if path.suffix.lower() in CURVE_SUFFIXES:
+        curve, told = _curve(path)
+        return TwinSettings(curve, design=path.stem, length_mm=told.get("length_mm", LENGTH_MM))
     found = read_document(path, _Twin)
     if found.curve is None:
         curve, told = shipped_curve(), {"length_mm": LENGTH_MM}

@@ -28,4 +28,4 @@ class DeadPressure(Effect):
         def above(x: float) -> float:
             return (x + math.sqrt(x * x + smooth * smooth)) / 2
 
-        return {"bend": lambda value, now: max(0.0, above(value - dead) - above(-dead))}
+        return {"bend": lambda value, now: above(value - dead) - above(-dead)}

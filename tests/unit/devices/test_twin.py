@@ -37,7 +37,10 @@ def test_same_seed_same_readings_to_the_last_bit() -> None:
     one, other, third = armed(seed=4), armed(seed=4), armed(seed=5)
     assert drive(one) == drive(other)
     assert all(np.array_equal(a, b) for a, b in zip(vars(one.truth).values(), vars(other.truth).values()))
-    assert drive(third) != drive(armed(seed=4)) and np.array_equal(third.truth.angle_deg, one.truth.angle_deg)
+    again = drive(armed(seed=4))
+    for name in ("pressure_MPa", "flex_V"):
+        assert [getattr(r, name) for r in drive(armed(seed=5))] != [getattr(r, name) for r in again]
+    assert drive(third) != again and np.array_equal(third.truth.angle_deg, one.truth.angle_deg)
 
 
 def test_a_reading_is_of_the_moment_before_its_command() -> None:

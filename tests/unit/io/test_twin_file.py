@@ -86,6 +86,8 @@ def test_a_curve_beside_the_file(tmp_path: Path) -> None:
     twin = read_twin(written(tmp_path, "curve: a.csv\n"))
     assert twin.curve.angle_deg.tolist() == [0, 30, 50] and twin.curve.last_MPa == 0.2 and twin.design == "a"
     assert read_curve(tmp_path / "a.csv").source == "a.csv"
+    alone = read_twin(tmp_path / "a.csv")
+    assert alone.curve.angle_deg.tolist() == [0, 30, 50] and tuple(alone.effects) == DEFAULT and alone.length_mm == 180
     with pytest.raises(InputError, match=r"late.csv: .*begin at 0 MPa"):
         read_twin(written(tmp_path, "curve: late.csv\n"))
     with pytest.raises(UsageError, match="no such file"):
