@@ -6,7 +6,8 @@ import math
 from importlib.resources import files
 from pathlib import Path
 
-from benchlab.errors import UsageError
+from benchlab.errors import InputError, UsageError
+from benchlab.io.files import check_regular_file
 from benchlab.io.protocol_schema import ProtocolDocument, segments_of
 from benchlab.io.yaml_file import read_document_with_lines, read_text, refused
 from benchlab.protocol.curvature import AngleHold, AngleRamp, AngleSine
@@ -16,6 +17,8 @@ from benchlab.protocol.survey import Bounds, Problem, survey
 from benchlab.protocol.unroll import unroll
 
 MAX_DURATION_S = 3600.0
+MAX_BYTES = 250_000
+"""Of a protocol file, some thousands of segments: reading YAML strictly takes seconds then."""
 
 
 def shipped_protocols() -> dict[str, Path]:
@@ -39,6 +42,9 @@ def read_protocol(protocol: str | Path, max_duration_s: float = MAX_DURATION_S, 
     """
     _check_options(max_duration_s, rate_Hz)
     path = protocol_path(protocol)
+    if (size := check_regular_file(path).st_size) > MAX_BYTES:
+        what = f"{size / 1e6:.2f} MB, more than the limit of {MAX_BYTES / 1e6:g} MB for a protocol"
+        raise InputError(what, file=path, hint="write what comes again as `repeat` or `steps`")
     document, lines = read_document_with_lines(path, ProtocolDocument)
     segments = segments_of(document.segments, ("segments",), lines)
     rate = document.rate_Hz if rate_Hz is None else float(rate_Hz)

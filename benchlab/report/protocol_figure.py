@@ -17,6 +17,7 @@ from benchlab.report.protocol_strip import (
     ROW_IN,
     STRIP_IN,
     event_rows,
+    lined,
     named,
     plot_events,
     plot_segments,
@@ -64,7 +65,9 @@ def draw_protocol_figure(plan: Plan, note: str = "", ceiling_MPa: float | None =
     big: dict[str, Any] = {"fontsize": 12, "fontweight": "bold", "parse_math": False}
     figure.text(_LEFT / _WIDTH, 1 - 0.3 / height, fitted(plan.title, 0.9 * _ROOM, 12), **big)
     small: dict[str, Any] = {"fontsize": 9, "color": GREY, "parse_math": False}
-    figure.text(_LEFT / _WIDTH, 1 - 0.53 / height, fitted(note, _ROOM, 9), **small)
+    hidden = len(plan.events) - len(lined(plan.events))
+    more = f"; {hidden} marks and triggers are not drawn" if hidden else ""
+    figure.text(_LEFT / _WIDTH, 1 - 0.53 / height, fitted(note + more, _ROOM, 9), **small)
     return figure
 
 

@@ -17,8 +17,8 @@ STRIP_IN, ROW_IN, RIGHT_IN = 0.24, 0.17, 0.25
 """Heights of the strip and of a row of words, and the page's margin on the right that words may use, in inches."""
 
 LETTERS = 7.5
-MAX_NAMED = 15
-"""Marks and triggers that get their words; of others there are only lines."""
+MAX_BLOCKS, MAX_LINES, MAX_NAMED = 400, 100, 15
+"""Segments up to which each gets a block, marks and triggers up to which each gets a line, and those that get their words."""
 
 _TRIGGER, _MOVING = "#009E73", "#cfe2f0"
 _SHADES = {"hold": "#e3e3e3", "vent": "#f6f6f6", "curvature": "#d5ece3"}
@@ -26,9 +26,12 @@ _SHADES = {"hold": "#e3e3e3", "vent": "#f6f6f6", "curvature": "#d5ece3"}
 
 
 def plot_segments(ax: Axes, plan: Plan, inches: float) -> None:
-    """A block for each segment as it comes, with its words where there is room. inches: width of the axes."""
-    for _, group in groupby(plan.steps, _segment):
-        steps = list(group)
+    """A block for each segment as it comes, with its words where there is room; none where they would be too narrow to be told apart.
+
+    inches: width of the axes.
+    """
+    blocks = [list(group) for _, group in groupby(plan.steps, _segment)]
+    for steps in blocks if len(blocks) <= MAX_BLOCKS else []:
         start, end = steps[0].start_s, steps[-1].end_s
         ax.axvspan(start, end, facecolor=_SHADES.get(steps[0].kind, _MOVING), edgecolor="white", linewidth=0.6)
         width = inches * (end - start) / plan.duration_s - 0.06
@@ -70,11 +73,16 @@ def named(events: tuple[PlanEvent, ...]) -> tuple[PlanEvent, ...]:
     return tuple(first.values())[:MAX_NAMED]
 
 
+def lined(events: tuple[PlanEvent, ...]) -> tuple[PlanEvent, ...]:
+    """The events that get a line: all, or where that would be too many, those that get their words."""
+    return events if len(events) <= MAX_LINES else named(events)
+
+
 def plot_events(strip: Axes, panels: list[Axes], plan: Plan, inches: float) -> None:
     """A line through the panels for each event; the words of those that have them above the strip, in rows."""
     from matplotlib.transforms import offset_copy
 
-    for time_s, kind in {(event.time_s, event.kind): None for event in plan.events[:1000]}:
+    for time_s, kind in {(event.time_s, event.kind): None for event in lined(plan.events)}:
         for ax in panels:
             ax.axvline(time_s, color=_colour(kind), linewidth=0.8, linestyle=(0, (2, 2)), zorder=1.8)
     words, figure = named(plan.events), strip.get_figure(root=True)

@@ -243,6 +243,12 @@ def test_a_million_steps_are_refused_before_they_are_unrolled(tmp_path: Path) ->
     assert "would last 1e+72 s" in refused(tmp_path, of(nested))
 
 
+def test_a_huge_file_is_refused_before_it_is_parsed(tmp_path: Path) -> None:
+    begun = time.perf_counter()
+    line = refused(tmp_path, of(*["vent: {duration_s: 1}"] * 20_000))
+    assert time.perf_counter() - begun < 0.5 and "0.25 MB for a protocol; write what comes again as `repeat`" in line
+
+
 def test_a_longer_protocol_may_be_allowed(tmp_path: Path) -> None:
     path = write(tmp_path, of("hold: {pressure_MPa: 0.1, duration_s: 3601}"))
     with pytest.raises(InputError, match=r"would last 3601 s \(1 h\)"):
