@@ -34,6 +34,7 @@ from benchlab.protocol.plan import Plan
 from benchlab.protocol.unroll import unroll
 from benchlab.runner.clock import VirtualClock
 from benchlab.runner.run import execute
+from benchlab.twin.effects.catalogue import EFFECTS
 from benchlab.twin.effects.effect import Effect
 from benchlab.twin.settings import TwinSettings
 from benchlab.units import FloatArray
@@ -289,6 +290,20 @@ def windup(known: Tuned) -> None:
         print(f"  {name:28} {np.sqrt(np.mean(error**2)):6.2f}° {np.abs(error).max():6.2f}°")
 
 
+def further_effects(known: Tuned, seeds: int) -> None:
+    """Physics that the default twin leaves out, with its typical values; line and gains stay."""
+    print(f"\nfurther effects of the twin, worst of {seeds} seeds: RMSE against the flex sensor / against the truth")
+    several = ("softening", "leakage", "temperature", "gravity")
+    for added in (several, ("flex_hysteresis",)):
+        twin = replace(known.twin, effects={**known.twin.effects, **{name: EFFECTS[name]() for name in added}})
+        words = []
+        for name, maker in known.makers().items():
+            found = judged(sine(), twin, known.bench, maker, seeds)
+            sides = (max(one.rmse_deg for one in each) for each in (found.measured, found.true))
+            words.append(f"{name} {' / '.join(f'{side:.2f}°' for side in sides)}")
+        print(f"  {', '.join(added)}: {', '.join(words)}")
+
+
 def slower(seeds: int) -> None:
     """A regulator that is several times as slow, with line and gains found on it."""
     twin = read_twin(None)
@@ -356,7 +371,7 @@ class Modelled(FeedForward):
         self.asked.append(ahead_deg)
         late = self.asked[max(0, len(self.asked) - 2 - round(self.dead_s / dt_s))]
         if math.isnan(self.model_deg):
-            self.model_deg = angle_deg
+            self.model_deg = reference_deg if math.isnan(angle_deg) else angle_deg
         self.model_deg += (late - self.model_deg) * (1 - math.exp(-dt_s / self.lag_s))
         return self.pi.around(self.inverse(ahead_deg), self.model_deg, angle_deg, dt_s)
 
@@ -375,6 +390,7 @@ def main() -> None:
     print(f"by hand: kp {HAND[0]:g}, ki {HAND[1]:g}")
     controllers(known, seeds)
     robustness(known, max(3, seeds // 4))
+    further_effects(known, max(2, seeds // 4))
     slower(max(2, seeds // 4))
     variants(known, max(3, seeds // 4))
     windup(known)

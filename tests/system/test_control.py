@@ -125,6 +125,10 @@ def test_what_cannot_work_is_refused_and_nothing_is_written(guided: Path, benchl
     flex = ("control", "flex", guided / "flex.h5", "--calibration", guided / "bench.yaml", "--angle")
     again = benchlab(*flex, guided / "flex.truth.csv")
     assert again.code == 2 and "exists" in again.err and "--overwrite" in again.err
+    (guided / "bench.flex.png").rename(guided / "elsewhere.png")
+    again = benchlab(*flex, guided / "flex.truth.csv")
+    (guided / "elsewhere.png").rename(guided / "bench.flex.png")
+    assert again.code == 2 and "bench.yaml: exists" in again.err  # a flex line is not replaced unasked
     none = benchlab(*flex, tmp_path / "no.csv", "--out", tmp_path / "a.yaml")
     assert none.code == 2 and "no such file" in none.err
     wrong = benchlab(*flex, guided / "flex.csv.gz", "--out", tmp_path / "a.yaml")
