@@ -41,9 +41,10 @@ MET = {None: "", True: "met", False: "**missed**"}
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("what", nargs="*", choices=[[], *PARTS], help="what to measure [default: all]")
+    parts = parser.parse_args().what or list(PARTS)
     print(f"{date.today().isoformat()}, benchlab {benchlab.__version__}, Python {platform.python_version()}\n")
     print("| what | figure | bar |\n|---|---|---|", flush=True)
-    for part in parser.parse_args().what or list(PARTS):
+    for part in parts:
         for bar, figure, met in PARTS[part]():
             print(f"| {bar} | {figure} | {MET[met]} |", flush=True)
 
