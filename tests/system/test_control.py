@@ -78,6 +78,9 @@ def test_the_sine_is_tracked_better_than_in_the_paper(guided: Path) -> None:
     closed = np.isfinite(samples["reference_deg"]) & (samples["time_s"] >= 10)
     error = (samples["reference_deg"] - samples["angle_deg"])[closed]
     assert found["measured"]["rmse_deg"] == pytest.approx(np.sqrt(np.mean(error**2)), rel=1e-9)
+    true_deg = np.genfromtxt(guided / "sine.truth.csv", delimiter=",", names=True, skip_header=1)["angle_deg"]
+    off = (samples["reference_deg"] - true_deg)[closed]
+    assert found["true"]["rmse_deg"] == pytest.approx(np.sqrt(np.mean(off**2)), rel=1e-4)
     assert cv2.imread(str(guided / "sine.tracking.png")) is not None
 
 
