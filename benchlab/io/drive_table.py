@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import csv
+import itertools
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
-from benchlab.io.drive_file import cycles_of, steps_of
+from benchlab.io.drive_file import cycles_of, origin, steps_of
 from benchlab.io.files import written_whole
 from benchlab.io.journal import Journal
 from benchlab.io.table import guarded
@@ -29,7 +30,8 @@ def write_drive_csv(path: Path, journal: Journal) -> None:
     """Write the table whole or not at all. InputError where the disk refuses.
 
     Columns: time_s, command_MPa, pressure_MPa, angle_deg, flex_V, reference_deg, cycle, step (from 0), step_label, tick, late_s, answer_s,
-    command_V, device_time_s, monitor_V, code, status, event: what happened after the sample and before the next.
+    command_V, device_time_s, monitor_V, code, status, event: what happened after the sample and before the next, origin: where the
+    numbers are from: `bench`, `simulated (twin)`, ...
     """
     samples = journal.samples
     labels = [guarded(str(step.get("label", ""))) for step in steps_of(journal.header)]
@@ -43,6 +45,7 @@ def write_drive_csv(path: Path, journal: Journal) -> None:
     columns["code"] = ("" if code < 0 else str(code) for code in samples["code"].tolist())
     columns["status"] = map(str, samples["status"].tolist())
     columns["event"] = iter(_events(journal))
+    columns["origin"] = itertools.repeat(origin(journal.header) or "bench", len(samples))
     with (
         written_whole(path) as temporary,
         temporary.open("w", encoding="utf-8", errors="backslashreplace", newline="") as file,

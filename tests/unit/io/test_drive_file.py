@@ -215,5 +215,6 @@ def test_the_table_has_a_row_a_sample_and_empty_cells_for_what_is_not_known(tmp_
     assert float(rows[150]["command_MPa"]) == pytest.approx(0.1) and float(rows[150]["time_s"]) == 3.0
     assert rows[150]["pressure_MPa"] == rows[150]["reference_deg"] == ""
     assert rows[3]["code"] == "" and rows[4]["code"] != ""
+    assert {row["origin"] for row in rows} == {"simulated (twin)"}
     told = {index: row["event"] for index, row in enumerate(rows) if row["event"]}
     assert told == {5: "trigger", 100: "mark: =top\\n", 399: "stop: completed"}
