@@ -54,14 +54,14 @@ class PI:
     def pressure_MPa(self, reference_deg: float, ahead_deg: float, angle_deg: float, dt_s: float) -> float:
         """The pressure to ask for now, dt_s after the call before. ahead_deg is not used by a PI.
 
-        Raises BenchError where no angle has been measured for longer than missing_s, InputError without a reference.
+        Raises BenchError where no angle has been measured for longer than missing_s, ValueError without a reference.
         """
         return self.around(0.0, reference_deg, angle_deg, dt_s)
 
     def around(self, base_MPa: float, reference_deg: float, angle_deg: float, dt_s: float) -> float:
         """As `pressure_MPa`, as a correction of a pressure that is known beforehand."""
         if not math.isfinite(reference_deg):
-            raise InputError(f"the reference angle is {reference_deg}", hint="the protocol gives none at this time")
+            raise ValueError(f"the reference angle is {reference_deg}: a plan has one for each closed-loop tick")
         if not math.isfinite(angle_deg):
             return self._blind(dt_s)
         self._without_s = 0.0

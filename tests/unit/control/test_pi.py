@@ -99,6 +99,6 @@ def test_impossible_gains_are_refused(kp: float, ki: float, ceiling: float) -> N
         PI(kp, ki, ceiling)
 
 
-def test_a_reference_that_is_missing_is_refused() -> None:
-    with pytest.raises(InputError, match="reference"):
+def test_a_reference_that_is_missing_is_a_bug() -> None:
+    with pytest.raises(ValueError, match="reference"):
         PI(0.1, 0.1, 0.35).pressure_MPa(math.nan, 0.0, 0.0, 0.01)
