@@ -195,7 +195,7 @@ def test_flips_and_cuts_end_in_a_refusal_or_in_the_same_numbers(tmp_path, drive)
 def test_the_table_has_a_row_a_sample_and_empty_cells_for_what_is_not_known(tmp_path):
     samples = without("reference_deg", "pressure_MPa")
     samples["code"][3] = -1
-    write_drive_csv(tmp_path / "a.csv", journal_of(tmp_path, samples))
+    write_drive_csv(tmp_path / "a.csv", journal_of(tmp_path, samples, header_of(samples, "twin")))
     with (tmp_path / "a.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 400
