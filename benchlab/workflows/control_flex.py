@@ -57,7 +57,7 @@ def calibrate_flex_sensor(
         except OSError as error:
             raise cannot_write(error, picture) from error
         write_bench_file(target, BenchFile(bench, file.readings, origin), _comment(found))
-    return _summary(found, run, starts, how, [target, picture])
+    return _summary(found, run, starts, how, _warnings(found, run, file), [target, picture])
 
 
 def _starts(run: DrivenRun, angle: Path, told: float | None) -> tuple[float, str]:
@@ -80,8 +80,10 @@ def _short(line: Line) -> Line:
     return Line(*(float(f"{value:.7g}") for value in (line.gain, line.offset, line.sd)))
 
 
-def _warnings(found: FlexCalibration) -> list[str]:
+def _warnings(found: FlexCalibration, run: DrivenRun, file: BenchFile) -> list[str]:
     warnings = []
+    if run.bench.name != file.bench.name:
+        warnings.append(f"the run was made on bench {run.bench.name}, and the file is of bench {file.bench.name}")
     tests = {"a bow": found.line.bow_p, "lack of fit": found.lack_of_fit.p if found.lack_of_fit else np.nan}
     for name, p in tests.items():
         if p < NOT_STRAIGHT:
@@ -95,7 +97,9 @@ def _warnings(found: FlexCalibration) -> list[str]:
     return warnings
 
 
-def _summary(found: FlexCalibration, run: DrivenRun, starts: float, how: str, outputs: list[Path]) -> dict[str, Any]:
+def _summary(
+    found: FlexCalibration, run: DrivenRun, starts: float, how: str, warnings: list[str], outputs: list[Path]
+) -> dict[str, Any]:
     summary: Any = plain(
         {
             "run": str(run.path),
@@ -119,7 +123,7 @@ def _summary(found: FlexCalibration, run: DrivenRun, starts: float, how: str, ou
                 {"pressure_MPa": p, "volts": v, "angle_deg": a, "residual_deg": r}
                 for p, v, a, r in zip(found.pressure_MPa, found.volts, found.angle_deg, found.residual_deg)
             ],
-            "warnings": _warnings(found),
+            "warnings": warnings,
             "outputs": outputs,
         }
     )

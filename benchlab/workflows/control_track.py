@@ -26,6 +26,10 @@ def track_run(
 
     Returns what was found, as `--json` shows it. Raises UsageError and InputError; then nothing was written.
     """
+    if settle_s < 0:
+        raise UsageError(f"--settle-s is {settle_s:g}", hint="give 0 s or more")
+    if not 1 <= length_mm <= 10_000:
+        raise UsageError(f"--length-mm is {length_mm:g}", hint="give the length of the arc, 1 to 10000 mm")
     run = read_driven(source)
     paths = _paths(out, source.stem, overwrite)
     tracked = _closed_loop(run, truth)

@@ -34,6 +34,10 @@ def tune_from_run(
     """
     if out.suffix.lower() not in (".yaml", ".yml"):
         raise UsageError("is not a .yaml file", file=out, hint="give --out a name that ends in .yaml")
+    if not 1.1 <= max_sensitivity <= 5:
+        raise UsageError(f"--max-sensitivity is {max_sensitivity:g}", hint="give 1.1 to 5; 1.4 is cautious, 2 is fast")
+    if closed_loop_s is not None and not 0 < closed_loop_s <= 1000:
+        raise UsageError(f"--closed-loop-s is {closed_loop_s:g}", hint="give more than 0 and at most 1000")
     check_new_file(out, overwrite)
     run = read_driven(source)
     if run.bench.flex is None:

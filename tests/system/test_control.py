@@ -19,7 +19,7 @@ from benchlab.control.pi import PI
 from benchlab.devices.twin.bench import twin_bench
 from benchlab.devices.twin.twin import Twin
 from benchlab.errors import UsageError
-from benchlab.io.bench_file import read_bench_file
+from benchlab.io.bench_file import read_bench_file, write_bench
 from benchlab.io.control_file import ControlFile, read_control
 from benchlab.io.drive_file import read_drive_file, write_drive_file
 from benchlab.io.twin_file import read_twin
@@ -113,6 +113,13 @@ def test_angles_on_another_clock_are_moved_onto_the_runs(guided: Path, benchlab,
     assert right.json["angle_starts_by"] == "as told" and right.json["angle_starts_s"] == 1
 
 
+def test_a_bench_file_of_another_bench_is_told(guided: Path, benchlab, tmp_path: Path) -> None:
+    other = tmp_path / "other.yaml"
+    write_bench(other, replace(read_bench_file(guided / "bench.yaml").bench, name="left", flex=None))
+    done = benchlab("control", "flex", guided / "flex.h5", "--angle", guided / "flex.truth.csv", "--calibration", other)
+    assert done.code == 0 and "the run was made on bench bench, and the file is of bench left" in done.err
+
+
 def test_a_film_begins_at_the_one_trigger_of_its_run(guided: Path) -> None:
     run_of = read_driven(guided / "flex.h5")
     (tick,) = [event["tick"] for event in run_of.journal.events if event["kind"] == "trigger"]
@@ -147,6 +154,12 @@ def test_what_cannot_work_is_refused_and_nothing_is_written(guided: Path, benchl
     text = benchlab("control", "track", guided / "bench.yaml", "--out", tmp_path)
     assert text.code == 3 and "bench.yaml" in text.err
     assert benchlab("control", "tune", guided / "steps.h5", "--out", tmp_path / "d.txt").code == 2
+    for option, value in (("--max-sensitivity", 1), ("--closed-loop-s", -1)):
+        done = benchlab("control", "tune", guided / "steps.h5", "--out", tmp_path / "d.yaml", option, value)
+        assert done.code == 2 and f"{option} is {value}" in done.err
+    for option, value in (("--settle-s", -1), ("--length-mm", 0)):
+        done = benchlab("control", "track", guided / "sine.h5", "--out", tmp_path, option, value)
+        assert done.code == 2 and f"{option} is {value}" in done.err
     assert not list(tmp_path.iterdir())
 
 
