@@ -32,13 +32,14 @@ from benchlab.workflows.run_prepare import Prepared
 @dataclass(frozen=True)
 class Driven:
     """A run that is over: its end, its journal, and the twin's truth if it ran on one. left: what is known to be wrong with the bench
-    after its vent, in words; empty where nothing is."""
+    after its vent, in words; empty where nothing is. went_first: whether the loop went before other programs."""
 
     end: RunEnd
     journal: Path
     about: dict[str, Any]
     truth: Any = None
     left: str = ""
+    went_first: bool = False
 
 
 def drive(prepared: Prepared, stop: Stop, on_tick: Callable[[Tick], None] | None = None) -> Driven:
@@ -59,13 +60,13 @@ def drive(prepared: Prepared, stop: Stop, on_tick: Callable[[Tick], None] | None
                 check_zero(device, prepared.bench, RealClock())
             journal = JournalWriter(path, header_of(prepared, about))
             try:
-                end = _executed(prepared, device, journal, stop, on_tick)
+                end, went_first = _executed(prepared, device, journal, stop, on_tick)
             finally:
                 trouble = _closed(journal)
             left = _left(prepared, device, end)
         finally:
             device.close()
-    return Driven(end.with_trouble(trouble), path, about, getattr(device, "truth", None), left)
+    return Driven(end.with_trouble(trouble), path, about, getattr(device, "truth", None), left, went_first)
 
 
 def open_prepared(prepared: Prepared) -> Device:
@@ -75,11 +76,12 @@ def open_prepared(prepared: Prepared) -> Device:
 
 def _executed(
     prepared: Prepared, device: Device, journal: JournalWriter, stop: Stop, on_tick: Callable[[Tick], None] | None
-) -> RunEnd:
+) -> tuple[RunEnd, bool]:
+    """The end, and whether the loop went before other programs."""
     clock: Clock = VirtualClock() if prepared.fast else RealClock()
     guards = guards_of(prepared.bench, prepared.plan.rate_Hz, prepared.limits, prepared.expected_deg)
-    with undisturbed():
-        return execute(
+    with undisturbed(real_time=not prepared.fast) as went_first:
+        end = execute(
             prepared.plan,
             device,
             prepared.bench,
@@ -92,6 +94,7 @@ def _executed(
             prepared.limits,
             prepared.settings.pause_limit_s,
         )
+    return end, went_first
 
 
 def _check_ceiling(prepared: Prepared, about: dict[str, Any]) -> None:

@@ -29,6 +29,7 @@ def written(prepared: Prepared, driven: Driven) -> dict[str, Any]:
         "bench": str(prepared.spec),
         **end.record(),
         "late_ms": None if prepared.fast else end.late_ms,
+        "went_first": driven.went_first,
         "exit_code": BenchError.exit_code
         if driven.left
         else end.exit_code or (InputError.exit_code if troubles else 0),
