@@ -121,14 +121,20 @@ def _mark_settling(ax: Axes, run: TrackedRun, settle_s: float) -> None:
 
 def _words(found: Tracking, true: Tracking | None) -> list[str]:
     lines = [
-        f"R² {found.r_squared:.4f}  (1 − Σe²/Σ(r − r̄)²)",
+        f"{_r_squared(found)}  (1 − Σe²/Σ(r − r̄)²)",
         f"RMSE {found.rmse_deg:.2f}°, mean |e| {found.mae_deg:.2f}°, max {found.max_deg:.1f}°",
-        f"lag {1000 * found.lag_s:.0f} ms" if np.isfinite(found.lag_s) else "lag not told by this reference",
+        f"lag {1000 * found.lag_s:.0f} ms".replace("-", "−")
+        if np.isfinite(found.lag_s)
+        else "lag not told by this reference",
         f"tip RMSE {found.tip_rmse_mm:.2f} mm, max {found.tip_max_mm:.1f} mm",
         f"effort ∫|du| {found.variation_MPa:.3g} MPa, peak {found.peak_MPa:.3f} MPa",
         f"at the ceiling {100 * found.at_ceiling:.1f} %, at zero {100 * found.at_zero:.1f} %",
     ]
     if true is not None:
-        lines.append(f"against the truth: R² {true.r_squared:.4f}, RMSE {true.rmse_deg:.2f}°")
+        lines.append(f"against the truth: {_r_squared(true)}, RMSE {true.rmse_deg:.2f}°")
     lines += [f"the first {found.settle_s:g} s (grey) are left out"] if found.settle_s else []
     return [*lines, f"{found.samples} samples, {found.missing} without an angle"]
+
+
+def _r_squared(found: Tracking) -> str:
+    return f"R² {found.r_squared:.4f}" if np.isfinite(found.r_squared) else "no R²"

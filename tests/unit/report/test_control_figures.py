@@ -40,6 +40,13 @@ def test_without_truth_none_is_drawn() -> None:
     assert "measured at the regulator" in {line.get_label() for line in figure.axes[2].lines}
 
 
+def test_a_reference_that_stands_still_has_no_r_squared() -> None:
+    still = np.full(len(T), 60.0)
+    run = TrackedRun(T, still, still - 2, COMMAND, COMMAND, 0.35)
+    words = draw_tracking_figure(run, track(T, still, still - 2, COMMAND, 0.35), "a", "b", 180.0).texts[2].get_text()
+    assert "no R²" in words and "lag not told" in words and "nan" not in words
+
+
 def test_a_flex_calibration_is_drawn_hold_by_hold() -> None:
     levels = np.array([0.0, 0.1, 0.2, 0.3, 0.2, 0.1, 0.0])
     command = np.repeat(levels, 200)
