@@ -192,7 +192,8 @@ class Loop:
             self.ticks += 1
             self.late_s.append(late_s)
         faults, status = self.ask_faults(), int(reading.status)
-        return Tick(index, time_s, late_s, command_MPa, reading, status, angle, reference_deg, faults, held)
+        fault = self._faults[-1].cause if faults else ""
+        return Tick(index, time_s, late_s, command_MPa, reading, status, angle, reference_deg, faults, fault, held)
 
 
 def sample_of(tick: Tick, step: int, answer_s: float, command_V: float) -> tuple[Any, ...]:

@@ -55,14 +55,16 @@ class FaultGuard:
     def __init__(self, share: float, rate_Hz: float) -> None:
         self.most = max(5.0, share * rate_Hz * self.OVER_S)
         self.recent: list[tuple[float, int]] = []
+        self.last = ""
 
     def check(self, tick: Tick) -> Cause | None:
         if tick.faults:
             self.recent = [(t, n) for t, n in self.recent if t > tick.time_s - self.OVER_S]
             self.recent.append((tick.time_s, tick.faults))
+            self.last = tick.fault
         if not self.recent or tick.status & Status.NO_ANSWER.value:
             return None
         if (total := sum(n for t, n in self.recent if t > tick.time_s - self.OVER_S)) <= self.most:
             return None
-        words = f"{total} faults on the line in {self.OVER_S:g} s, more than {self.most:g}"
-        return Cause("faults", f"{words}: look at cable, plug and noise; the journal has each with its cause")
+        words = f"{total} faults on the line in {self.OVER_S:g} s, more than {self.most:g}, the last: {self.last}"
+        return Cause("faults", f"{words}; look at cable, plug and noise, or run at a lower rate")

@@ -246,7 +246,7 @@ def test_faults_stop_at_a_rate_and_not_before() -> None:
 
     assert every(12).reason == "completed"
     end = every(8)
-    assert end.reason == "faults" and "21 faults on the line in 2 s, more than 20" in end.cause.words
+    assert end.reason == "faults" and "21 faults on the line in 2 s, more than 20, the last: bad CRC" in end.cause.words
 
 
 def test_a_line_that_stays_silent_is_called_lost_by_the_device_and_not_faulty() -> None:
