@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from benchlab.protocol.plan import Plan, Step
+from benchlab.protocol.stretch import DECIMALS
 
 
 @dataclass(frozen=True)
@@ -75,8 +75,7 @@ def _jumps(steps: tuple[Step, ...]) -> list[float | None]:
     before: float | None = 0.0
     found: list[float | None] = []
     for step in steps:
-        jump = None if before is None or step.start_MPa is None else step.start_MPa - before
-        found.append(0.0 if jump is not None and math.isclose(jump, 0, abs_tol=1e-9) else jump)
+        found.append(None if before is None or step.start_MPa is None else round(step.start_MPa - before, DECIMALS))
         before = step.end_MPa
     return found
 

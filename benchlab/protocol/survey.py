@@ -16,8 +16,6 @@ MAX_TICKS, MAX_STEPS = 4_000_000, 100_000
 TICKS_A_CYCLE = 10
 """Of a sine or triangle at least: with fewer, what is asked for has little of its shape and may miss its peaks."""
 
-TOLERANCE_MPA = 1e-9
-
 
 @dataclass(frozen=True)
 class Bounds:
@@ -102,7 +100,7 @@ def _repeated(repeat: Repeat, state: State, bounds: Bounds) -> Survey:
     again = first if first.after == state else _walked(repeat.segments, first.after, bounds)
     return Survey(
         first.duration_s + (repeat.times - 1) * again.duration_s,
-        first.steps + (repeat.times - 1) * again.steps,
+        repeat.times * first.steps,
         again.after,
         first.problems + (() if again is first else again.problems),
     )
@@ -138,7 +136,7 @@ def _wrong(segment: Timed, stretch: Stretch, state: State, bounds: Bounds) -> It
 
 
 def _wrong_pressure(segment: Timed, stretch: Stretch, state: State, bounds: Bounds) -> Iterator[tuple[str, str]]:
-    if stretch.high > bounds.limit_MPa + TOLERANCE_MPA:
+    if stretch.high > bounds.limit_MPa:
         what = f"{stretch.label} reaches {stretch.high:g} MPa, above limit_MPa {bounds.limit_MPa:g}"
         yield what, "ask for less; the limit is there to protect actuator and hands"
     if (limit := bounds.slew_limit_MPa_per_s) is None or isinstance(segment, Vent):

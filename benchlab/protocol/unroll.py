@@ -59,9 +59,6 @@ def unroll(
         values = stretch.of(np.clip(time_s[here] - step.start_s, 0.0, stretch.duration_s))
         (reference_deg if stretch.closed_loop else pressure_MPa)[here] = np.clip(values, stretch.low, stretch.high)
         owner[here] = index
-    np.minimum(
-        pressure_MPa, limit_MPa, out=pressure_MPa
-    )  # a bit above by rounding, no more: the survey has seen to that
     return Plan(
         title,
         rate_Hz,

@@ -134,6 +134,13 @@ def test_a_segment_that_cannot_begin_says_why(segments: list[object], words: str
         plan_of(*segments)
 
 
+def test_sums_are_round_numbers_however_many_there_are() -> None:
+    plan = plan_of(Repeat(1000, (Hold(0.1, 0.2), Hold(0.1, 0.1))))
+    assert plan.duration_s == 200.0 and plan.steps[-1].start_s == 199.9
+    sine = plan_of(Hold(1.0, 0.2), Sine(0.2, 0.1, 1.0, 1))  # 0.2 + 0.1 is 0.30000000000000004
+    assert sine.pressure_MPa.max() == sine.steps[1].high_MPa == 0.3
+
+
 def test_what_is_known_after_a_vent_or_a_level() -> None:
     assert Vent(1.0).begun(State(None, None)).after == State(0.0, 0.0)
     assert Hold(1.0, 0.2).begun(State(None, 40.0)).after == State(0.2, None)
