@@ -108,7 +108,7 @@ def _drive(prepared: Any, quiet: bool) -> tuple[dict[str, Any], BaseException | 
     from benchlab.workflows.run import drive
     from benchlab.workflows.run_files import written
 
-    stop, keys = Stop(), have_keys() and not quiet
+    stop, keys = Stop(pausable=not prepared.fast), have_keys() and not quiet
     screen = Screen(prepared.plan, stop, keys)
     with keys_to(stop, keys), shown(screen, f"{prepared.plan.title} on {prepared.spec}", quiet):
         driven = drive(prepared, stop, None if quiet else screen.on_tick)

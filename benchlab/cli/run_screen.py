@@ -58,7 +58,9 @@ class Screen:
             return "stopping"
         if self.stop.paused:
             return "PAUSED, holding: p goes on, q stops"
-        return "p pauses, q stops" if self.keys else "Ctrl-C stops"
+        if not self.keys:
+            return "Ctrl-C stops"
+        return "p pauses, q stops" if self.stop.pausable else "q stops"
 
 
 @contextmanager

@@ -26,12 +26,13 @@ class Stop:
     """Wishes that the loop looks at between ticks. The first wish to stop is the one that counts.
 
     Signals only set it: nothing is raised into the loop, so that no signal comes between it and its vent. Only where the loop has
-    not looked for longer than PATIENCE_S, a second signal raises KeyboardInterrupt, once.
+    not looked for longer than PATIENCE_S, a second signal raises KeyboardInterrupt, once. pausable: not so in virtual time, where any
+    pause is over at once.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, pausable: bool = True) -> None:
         self.cause: Cause | None = None
-        self.paused = False
+        self.pausable, self.paused = pausable, False
         self._asked_at = 0.0
         self._seen = False
 
@@ -41,7 +42,7 @@ class Stop:
             self._asked_at, self.cause = time.monotonic(), cause
 
     def toggle_pause(self) -> None:
-        self.paused = not self.paused
+        self.paused = self.pausable and not self.paused
 
     def seen(self) -> Cause | None:
         """The cause to end for, if there is one; from then on signals are left without effect."""

@@ -295,6 +295,19 @@ def test_a_pause_ends_in_a_vent_after_its_limit() -> None:
     assert end.vented and end.paused_s == pytest.approx(1.5, abs=0.02)
 
 
+def test_in_virtual_time_nothing_is_paused() -> None:
+    stop = Stop(pausable=False)
+    end, _, journal = run(stop=stop, on_tick=lambda tick: stop.toggle_pause() if tick.index == 10 else None)
+    assert end.reason == "completed" and journal.kinds() == ["stop"]
+
+
+def test_a_wish_to_pause_before_the_first_tick_counts_after_it() -> None:
+    stop = Stop()
+    stop.toggle_pause()
+    end, device, _ = run(stop=stop, pause_limit_s=0.5)
+    assert end.reason == "pause" and end.ticks == 1 and len(device.asked) == 51
+
+
 def test_a_wish_to_stop_counts_in_a_pause() -> None:
     stop = Stop()
 
