@@ -22,11 +22,11 @@
 #include <fcntl.h>
 #include <math.h>
 #include <poll.h>
+#include <sched.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 #include <termios.h>
 #include <time.h>
 #include <unistd.h>
@@ -367,7 +367,8 @@ static void live(int pty) /* in real time; time that the computer spent elsewher
     char line[256];
     uint8_t bytes[256];
     double began = monotonic_s();
-    (void)setpriority(PRIO_PROCESS, 0, -10); /* where it may: a real Nano does not wait for the computer's other work */
+    struct sched_param first = {.sched_priority = 1};
+    sched_setscheduler(0, SCHED_RR, &first); /* where it may: a real Nano does not wait for the computer's other work */
     for (;;) {
         struct pollfd fds[2] = {{.fd = pty, .events = POLLIN}, {.fd = STDIN_FILENO, .events = POLLIN}};
         struct timespec patience = {0, 250000};
