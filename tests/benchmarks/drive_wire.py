@@ -1,9 +1,8 @@
 """What the line to the bench and the firmware reach: `python tests/benchmarks/drive_wire.py [pty] [killed] [noise] [lockstep]` prints a table.
 
-pty: a loop at 100 Hz with the emulated firmware in real time, and at 500 Hz; run as root, the emulator does not wait for other work (decision
-0015). killed: hosts killed or stopped in mid run, and how long the DAC
-held. noise: random bytes and damaged frames in lockstep. lockstep: how much faster than real time. Each gives rows of bar, figure, and
-whether it is met (None: measured, no bar).
+pty: a loop at 100 Hz with the emulated firmware in real time, and at 500 Hz; as root, the emulator does not wait for other work
+(decision 0015). killed: hosts killed or stopped in mid run, and how long the DAC held. noise: random bytes and damaged frames in lockstep.
+lockstep: how much faster than real time. Each gives rows of bar, figure, and whether it is met (None: measured, no bar).
 """
 
 from __future__ import annotations
