@@ -49,7 +49,7 @@ class RealClock:
             pass
 
     def _raw(self) -> float:
-        return time.monotonic() if self._clock is None else time.clock_gettime(self._clock)
+        return time.perf_counter() if self._clock is None else time.clock_gettime(self._clock)
 
 
 class VirtualClock:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -272,6 +273,12 @@ def test_a_guard_whose_sensor_is_not_there_is_not_there() -> None:
     assert len(names(BENCH)) == 7
     nothing = replace(BENCH, monitor=None, flex=None)
     assert run(lambda n, f: f.update(pressure_MPa=math.nan, flex_V=math.nan), bench=nothing).reason == "completed"
+
+
+def test_the_guide_names_every_limit() -> None:
+    guide = (Path(__file__).resolve().parents[3] / "docs" / "drive.md").read_text(encoding="utf-8")
+    for each in fields(Limits):
+        assert f"{each.name}=" in guide, each.name
 
 
 def test_limits_are_set_by_name_and_switched_off() -> None:
