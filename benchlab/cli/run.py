@@ -11,7 +11,7 @@ import click
 from benchlab.cli.bench_options import bench_option, calibration_option
 from benchlab.cli.design_options import Design
 from benchlab.cli.options import Finite
-from benchlab.errors import printable
+from benchlab.errors import counted, printable
 
 
 @click.command(short_help="Run a pressure protocol on a bench or its twin.")
@@ -121,7 +121,7 @@ def _tell_plan(found: dict[str, Any]) -> None:
     plan, bench = found["plan"], found["bench"]
     peak, slew = plan["peak_MPa"], plan["slew_MPa_per_s"]
     lines = [
-        f"{plan['title']}: {plan['duration_s']:g} s, {plan['ticks']} ticks at {plan['rate_Hz']:g} Hz, {plan['steps']} steps",
+        f"{plan['title']}: {plan['duration_s']:g} s, {plan['ticks']} ticks at {plan['rate_Hz']:g} Hz, {counted(plan['steps'], 'step')}",
         f"  asks for up to {peak or 0:.4g} MPa, in ramps of up to {slew or 0:.3g} MPa/s{', and for angles' * plan['closed_loop']}",
         f"  bench {found['bench_spec']}: {bench['name']}, up to {bench['ceiling_MPa']:.4g} MPa, {bench['ceiling_V']:.3f} V",
         f"  watched: {', '.join(found['guards'])}",

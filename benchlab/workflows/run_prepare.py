@@ -135,7 +135,7 @@ def prepare(protocol: str, settings: RunSettings) -> Prepared:
         control=control,
         controller=controller,
         stem=stem,
-        warnings=(*bench_doubts(spec, bench), *warnings),
+        warnings=(*bench_doubts(spec, bench), *_blind(bench), *warnings),
     )
 
 
@@ -214,6 +214,13 @@ def _control(plan: Plan, bench: Bench, settings: RunSettings) -> tuple[Control |
     if math.isclose(told.rate_Hz, plan.rate_Hz):
         return control, []
     return control, [f"the gains are for {told.rate_Hz:g} Hz, and the plan runs at {plan.rate_Hz:g} Hz"]
+
+
+def _blind(bench: Bench) -> list[str]:
+    """What is not seen on a bench without sensors."""
+    if bench.monitor is not None or bench.flex is not None:
+        return []
+    return ["neither monitor nor flex sensor is calibrated: a leak, a burst or a tube that is off is not seen"]
 
 
 def _stem(source: str, settings: RunSettings) -> Path:
