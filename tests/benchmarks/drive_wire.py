@@ -7,6 +7,7 @@ lockstep: how much faster than real time. Each gives rows of bar, figure, and wh
 
 from __future__ import annotations
 
+import os
 import random
 import sys
 import tempfile
@@ -209,17 +210,23 @@ def _storm(ticks: int) -> Row:
 
 
 def lockstep(seconds: float = 120.0) -> list[Row]:
+    """By the clock on the wall, and by the processors' time of both processes, which other work on the machine moves less."""
     from benchlab.bench import Bench
     from benchlab.devices.emulated import open_emulated
 
+    def used_s() -> float:
+        times = os.times()
+        return times.user + times.system + times.children_user + times.children_system
+
+    began, used = time.monotonic(), used_s()
     device = open_emulated(Bench("lockstep", calibrated=True), lockstep=True)
     device.arm()
-    began = time.monotonic()
     for tick in range(round(100 * seconds)):
         device.exchange(tick / 100, 0.1)
-    times = seconds / (time.monotonic() - began)
     device.close()
-    return [("emulated firmware in lockstep, 100 Hz: ≥ 50 × real time", f"{times:.0f} ×", times >= 50)]
+    times, by_processor = seconds / (time.monotonic() - began), seconds / (used_s() - used)
+    figure = f"{times:.0f} ×; {by_processor:.0f} × by processor time"
+    return [("emulated firmware in lockstep, 100 Hz: ≥ 50 × real time", figure, times >= 50)]
 
 
 PARTS = {"pty": pty, "killed": killed, "noise": noise, "lockstep": lockstep}
