@@ -70,7 +70,7 @@ def show(
 def list_(as_json: bool) -> None:
     """Name, duration and purpose of the protocols that come with benchlab; `benchlab protocol show NAME` shows one.
 
-    Each is a file to copy and change: `--json` says where it lies.
+    Each is a file to copy and change; where they lie is said too.
     """
     from benchlab.workflows.protocol_show import list_protocols
 
@@ -83,6 +83,7 @@ def list_(as_json: bool) -> None:
         peak = f"{one['peak_MPa']:.4g}" if one["peak_MPa"] else "-"
         table.add_row(one["name"], one["title"], f"{one['duration_s']:g}", peak, _angles(one["reference_deg"]))
     _print(table)
+    click.echo(f"files to copy and change: {printable(Path(found[0]['file']).parent)}")
 
 
 def _tell(found: dict[str, Any], err: bool) -> None:

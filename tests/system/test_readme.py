@@ -114,7 +114,7 @@ def test_command_of_readme(command: str, clone: Path, benchlab, monkeypatch: pyt
     refuses = words[0] in REFUSE_TO_REPLACE or " ".join(words[:2]) in REFUSE_TO_REPLACE
     done = benchlab(*words, *(["--overwrite"] if refuses else []))
     assert done.code == 0, done.err
-    assert any(word in done.err + done.out for word in ("wrote", "current", "complete", "F("))
+    assert any(word in done.err + done.out for word in ("wrote", "current", "complete", "lasts", "F("))
 
 
 def test_the_python_of_the_guide_runs(clone: Path, benchlab, monkeypatch: pytest.MonkeyPatch) -> None:
