@@ -127,4 +127,5 @@ def _limit_line(ax: Axes, pressure_MPa: float, text: str, side: Literal["left", 
         "ha": side,
         "va": "bottom",
     }
-    ax.annotate(text, (at, pressure_MPa), (points, 2), fontsize=LETTERS, color=LIMIT, **where)
+    paper = {"facecolor": "white", "edgecolor": "none", "pad": 0.6}
+    ax.annotate(text, (at, pressure_MPa), (points, 2), fontsize=LETTERS, color=LIMIT, bbox=paper, **where)
