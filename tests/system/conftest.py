@@ -14,6 +14,7 @@ import pytest
 from benchlab.cli.app import run
 from benchlab.io.video_writer import VideoWriter
 from benchlab.vision.synthetic import Scene, draw_frames
+from tests.system.runs import SHORT
 
 SMALL = Scene(width=640, height=360, markers=7, marker_radius_px=6.0, length_px=300.0, base_px=(140.0, 70.0), body_width_px=20.0,
               focal_px=900.0, noise_sd=1.0)  # fmt: skip
@@ -73,3 +74,11 @@ def bench(tmp_path: Path) -> Path:
     for index, name in enumerate(("tw3_slw5_s1", "tw3_slw5_s2", "tw3_slw10_s1", "tw3_slw10_s2")):
         (folder / f"{name}.csv").write_text(f"cycle,angle_deg\n1,{50 + index}\n2,{51 + index}\n")
     return folder
+
+
+@pytest.fixture
+def short(tmp_path: Path) -> Path:
+    """A protocol of eight seconds: up to 0.3 MPa, a hold, a vent."""
+    path = tmp_path / "short.yaml"
+    path.write_text(SHORT)
+    return path

@@ -11,6 +11,9 @@ import numpy as np
 from benchlab.bench import Bench, Line
 from benchlab.devices.interface import Fault, Reading, Status
 from benchlab.protocol.plan import Plan, PlanEvent, Step
+from benchlab.runner.clock import VirtualClock
+from benchlab.runner.end import RunEnd
+from benchlab.runner.run import execute
 
 BENCH = Bench("fake", monitor=Line(0.12, -0.12), flex=Line(100.0, -100.0), calibrated=True)
 """Monitor 1 to 5 V over 0 to 0.48 MPa, flex 1 V at 0° and 10 mV per degree."""
@@ -129,3 +132,14 @@ def ramp(seconds: float = 3.0, top_MPa: float = 0.3, rate_Hz: float = 100.0) -> 
     """Half a second at 0, a second of ramp, and at the top for the rest."""
     time_s = np.arange(round(seconds * rate_Hz)) / rate_Hz
     return np.clip(time_s - 0.5, 0, 1) * top_MPa
+
+
+def run(
+    pressure: np.ndarray | None = None, device: FakeDevice | None = None, **options: Any
+) -> tuple[RunEnd, Any, Any]:
+    """A run on the fake bench; device and journal share one log of what came after what."""
+    device = device or FakeDevice()
+    journal = options.pop("journal", None) or FakeJournal(device.calls)
+    plan = options.pop("plan", None) or plan_of(ramp() if pressure is None else pressure)
+    clock = options.pop("clock", None) or VirtualClock()
+    return execute(plan, device, BENCH, journal, clock, **options), device, journal
