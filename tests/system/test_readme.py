@@ -109,8 +109,8 @@ def test_command_of_readme(command: str, clone: Path, benchlab, monkeypatch: pyt
     if "--name" in words:  # a run is never replaced
         for old in (clone / "results").glob(f"{words[words.index('--name') + 1]}.*"):
             old.unlink()
-    if words[0] == "recover" and not (clone / words[1]).exists():
-        _run_ramp(benchlab)
+    for name in re.findall(r"results/(\w+)\.(?:h5|journal)\b", command):
+        _run_before(name, clone, benchlab)
     refuses = words[0] in REFUSE_TO_REPLACE or " ".join(words[:2]) in REFUSE_TO_REPLACE
     done = benchlab(*words, *(["--overwrite"] if refuses else []))
     assert done.code == 0, done.err
@@ -131,8 +131,7 @@ def test_the_python_of_the_guide_runs(clone: Path, benchlab, monkeypatch: pytest
 def test_the_python_about_runs_runs(clone: Path, benchlab, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(clone)
     (clone / "results").mkdir(exist_ok=True)
-    if not (clone / "results" / "ramp.h5").exists():
-        _run_ramp(benchlab)
+    _run_before("ramp", clone, benchlab)
     (code,) = _python_of("runs")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
@@ -148,10 +147,11 @@ def _python_of(guide: str) -> list[str]:
     return re.findall(r"```python\n(.*?)```", (ROOT / "docs" / f"{guide}.md").read_text(encoding="utf-8"), re.DOTALL)
 
 
-def _run_ramp(benchlab) -> None:
-    """The run that the guide about runs begins with."""
-    (command,) = [c for c in COMMANDS if "--name ramp" in c]
-    assert benchlab(*shlex.split(command)[1:]).code == 0
+def _run_before(name: str, clone: Path, benchlab) -> None:
+    """The run of this name that README or a guide makes first, unless it is there."""
+    makers = [c for c in COMMANDS if c.startswith("benchlab run ") and f"--name {name} " in f"{c} "]
+    if makers and not (clone / "results" / f"{name}.h5").exists():
+        assert benchlab(*shlex.split(makers[0])[1:]).code == 0
 
 
 def test_the_test_command_is_what_ci_runs() -> None:
