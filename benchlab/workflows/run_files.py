@@ -53,7 +53,7 @@ def _results(prepared: Prepared, driven: Driven) -> list[str]:
     if prepared.settings.video and prepared.twin is not None:
         from benchlab.workflows.twin_film import write_twin_film
 
-        path = prepared.path(".mp4")
+        path = prepared.path(".film.mp4")
         write_twin_film(path, driven.truth, prepared.twin)
         made.append(str(path))
     return made

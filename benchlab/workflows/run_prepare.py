@@ -31,7 +31,7 @@ BYTES_A_TICK, ROOM_BYTES = 600, 20_000_000
 
 LONGEST_NAME = 200
 
-SUFFIXES = (".journal", ".h5", ".csv", ".png", ".truth.csv", ".mp4")
+SUFFIXES = (".journal", ".h5", ".csv", ".png", ".truth.csv", ".film.mp4")
 """Of the files of a run."""
 
 
@@ -90,7 +90,7 @@ class Prepared:
     @property
     def suffixes(self) -> tuple[str, ...]:
         """Of the files that will be written."""
-        left_out = {".truth.csv": self.spec.kind != "twin", ".mp4": not self.settings.video}
+        left_out = {".truth.csv": self.spec.kind != "twin", ".film.mp4": not self.settings.video}
         return tuple(suffix for suffix in SUFFIXES if not left_out.get(suffix))
 
     def path(self, suffix: str) -> Path:

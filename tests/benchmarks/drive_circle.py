@@ -67,9 +67,15 @@ def circle(protocol: str | Path, folder: Path, twin: str = "twin") -> Circle:
     events = read_journal(folder / "run.journal").events
     start_s = next(event["time_s"] for event in events if event["kind"] == "trigger")
     benchlab(
-        "analyze", folder / "run.mp4", "--pressure", folder / "run.h5", f"--sync={-start_s}", "--out", folder / "seen"
+        "analyze",
+        folder / "run.film.mp4",
+        "--pressure",
+        folder / "run.h5",
+        f"--sync={-start_s}",
+        "--out",
+        folder / "seen",
     )
-    found = read_angle_series(folder / "seen" / "run.csv")
+    found = read_angle_series(folder / "seen" / "run.film.csv")
     truth = read_angle_series(folder / "run.truth.csv")
     true_deg = np.interp(found.time_s + start_s, truth.time_s, truth.angle_deg)
     return Circle(found.angle_deg - true_deg, true_deg, start_s)

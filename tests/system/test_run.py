@@ -146,4 +146,4 @@ def test_a_film_of_the_twin_is_drawn_when_asked_for(tmp_path: Path, benchlab: An
     )
     done = benchlab("run", tmp_path / "tiny.yaml", "--fast", "--video", "--out", tmp_path, "--name", "a", "--json")
     assert done.code == 0, done.err
-    assert str(tmp_path / "a.mp4") in done.json["outputs"] and (tmp_path / "a.mp4").stat().st_size > 1000
+    assert str(tmp_path / "a.film.mp4") in done.json["outputs"] and (tmp_path / "a.film.mp4").stat().st_size > 1000

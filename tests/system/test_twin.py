@@ -41,9 +41,9 @@ def test_protocol_twin_film_angle(lab: Path, benchlab: Callable) -> None:
     assert done.code == 0, done.err
     (trigger_s,) = [event["time_s"] for event in read_journal(lab / "a.journal").events if event["kind"] == "trigger"]
     assert trigger_s == pytest.approx(0.32)
-    done = benchlab("analyze", "a.mp4", "--pressure", "a.h5", f"--sync={-trigger_s}", "--out", "seen")
+    done = benchlab("analyze", "a.film.mp4", "--pressure", "a.h5", f"--sync={-trigger_s}", "--out", "seen")
     assert done.code == 0, done.err
-    found, truth = read_angle_series(lab / "seen" / "a.csv"), read_angle_series(lab / "a.truth.csv")
+    found, truth = read_angle_series(lab / "seen" / "a.film.csv"), read_angle_series(lab / "a.truth.csv")
     error = found.angle_deg - np.interp(found.time_s + trigger_s, truth.time_s, truth.angle_deg)
     assert len(error) >= 60 and truth.angle_deg.max() > 80
     assert np.quantile(np.abs(error), 0.95) <= 0.5
