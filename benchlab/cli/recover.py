@@ -8,25 +8,28 @@ from typing import Any
 
 import click
 
-from benchlab.errors import printable
+from benchlab.errors import InputError, printable
 
 
 @click.command(short_help="Files of a run from its journal, after a crash.")
 @click.argument("journal", metavar="JOURNAL", type=click.Path(path_type=Path))
 @click.option("--out", type=click.Path(path_type=Path), help="Folder for the files. [default: beside the journal]")
 @click.option("--overwrite", is_flag=True, help="Replace existing files.")
+@click.option("--strict", is_flag=True, help="Exit code 3 where something is lost or the record of the end is missing.")
 @click.option("--json", "as_json", is_flag=True, help="One JSON document on standard output.")
-def recover(journal: Path, out: Path | None, overwrite: bool, as_json: bool) -> None:
+def recover(journal: Path, out: Path | None, overwrite: bool, strict: bool, as_json: bool) -> int:
     """Make the drive file, table and picture of a run from its JOURNAL, as `benchlab run` does at its end.
 
     Everything up to the last whole record is there, whatever died: the program, the computer, the disk. What is cut or damaged is left
     out and told; no number whose checksum does not fit is used. The journal itself is only read: keep it.
 
     \b
-    Writes beside the journal, or into --out:
+    Writes beside the journal, or into --out (made if the folder above it exists):
       NAME.h5    the drive file (HDF5, NXdata)
       NAME.csv   a row a tick
       NAME.png   pressure and angle against time
+
+    Exit codes: 0 the files are made, whatever the journal lacks; with --strict, 3 where it lacks something: the files are made too.
 
     \b
     Example:
@@ -38,6 +41,10 @@ def recover(journal: Path, out: Path | None, overwrite: bool, as_json: bool) -> 
     _tell(found)
     if as_json:
         click.echo(json.dumps(found, indent=2, allow_nan=False))
+    if strict and (found["lost"] or not found["complete"]):
+        click.echo("benchlab: the journal is not whole, and --strict was given", err=True)
+        return InputError.exit_code
+    return 0
 
 
 def _tell(found: dict[str, Any]) -> None:

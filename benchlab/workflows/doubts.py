@@ -53,9 +53,9 @@ def doubts(series: CurvatureSeries, scale: Scale, settings: AnalyzeSettings, riv
     missing = int((~series.measured).sum())
     if missing:
         found.append(f"{missing} of {frames} frames could not be measured")
-    short = int((series.measured & (series.n_markers < series.used.shape[1])).sum())
-    if short:
-        found.append(f"markers left out in {short} of {frames} frames")
+    for words in ("markers left out", "outlier left out"):
+        if short := sum(words in flag for flag in series.flag):
+            found.append(f"{words} in {short} of {frames} frames")
     odd = sum("not constant curvature" in f for f in series.flag)
     if odd:
         found.append(f"not of constant curvature in {odd} of {frames} frames (see fit_rms_px)")

@@ -10,10 +10,11 @@ from typing import Any
 from benchlab.errors import InputError, UsageError
 from benchlab.io.drive_file import origin, write_drive_file
 from benchlab.io.drive_table import write_drive_csv
-from benchlab.io.files import cannot_write, check_new_file, check_regular_file, sha256, written_whole
+from benchlab.io.files import cannot_write, check_new_file, check_regular_file, reason_of, sha256, written_whole
 from benchlab.io.journal import Journal, read_journal, still_written
 from benchlab.report.drive_figure import draw_drive_figure
 from benchlab.report.figures import save_png
+from benchlab.workflows.outputs import Outputs
 
 SUFFIXES = (".h5", ".csv", ".png")
 
@@ -22,23 +23,38 @@ def write_results(path: Path, out: Path | None = None, overwrite: bool = False) 
     """Write `<name>.h5`, `.csv` and `.png` of a journal beside it, or in the folder `out`, and say what is in them.
 
     The journal is only read. Raises UsageError for a journal that is still being written, a missing folder, or a file that is there
-    without `overwrite`, and InputError for what is no journal, one without a sample, or a disk that refuses.
+    without `overwrite`, and InputError for what is no journal, one without a sample, or a disk that refuses. A folder whose last part
+    alone is missing is made. Where another process makes the same files, UsageError.
     """
     check_regular_file(path)
     if still_written(path):
         raise UsageError("is still being written", file=path, hint="its run makes these files itself when it ends")
-    outputs = [(out or path.parent) / f"{path.stem}{suffix}" for suffix in SUFFIXES]
-    for output in outputs:
-        if output.resolve() == path.resolve():
-            raise UsageError("is read here and would be replaced", file=output, hint="give the journal another name")
-        check_new_file(output, overwrite)
-    if not os.access(outputs[0].absolute().parent, os.W_OK | os.X_OK):
-        raise UsageError("the output folder is read-only", file=outputs[0].parent, hint="choose another --out")
+    folder = out or path.parent
+    outputs = [folder / f"{path.stem}{suffix}" for suffix in SUFFIXES]
+    if path.resolve() in [output.resolve() for output in outputs]:
+        raise UsageError("is read here and would be replaced", file=path, hint="give the journal another name")
     journal = read_journal(path)
     if not len(journal.samples):
         raise InputError("holds no sample", file=path, hint="the run ended before its first tick was answered")
-    _write_together(journal, path, outputs)
+    _make_folder(folder)
+    with Outputs(folder, path.stem).locked():
+        for output in outputs:
+            check_new_file(output, overwrite)
+        _write_together(journal, path, outputs)
     return {"journal": str(path), **summary(journal), "outputs": [str(output) for output in outputs]}
+
+
+def _make_folder(folder: Path) -> None:
+    """It is there afterwards, and may be written to; made if only its last part is missing."""
+    try:
+        folder.mkdir(exist_ok=True)
+    except FileNotFoundError:
+        raise UsageError("no such folder", file=folder.parent, hint="make it, or choose another --out") from None
+    except OSError as error:
+        what = f"cannot be used as output folder: {reason_of(error)}"
+        raise UsageError(what, file=folder, hint="choose another --out") from error
+    if not os.access(folder.absolute(), os.W_OK | os.X_OK):
+        raise UsageError("the output folder is read-only", file=folder, hint="choose another --out")
 
 
 def _write_together(journal: Journal, path: Path, outputs: list[Path]) -> None:

@@ -15,8 +15,10 @@ from pathlib import Path
 from typing import Any, Self
 
 import benchlab
-from benchlab.errors import UsageError
+from benchlab.errors import BenchlabError, UsageError
+from benchlab.io.drive_file import SCHEMA as DRIVE
 from benchlab.io.files import cannot_write, check_regular_file, reason_of, sha256
+from benchlab.io.nexus import schema_of
 from benchlab.io.run_file import read_provenance
 from benchlab.workflows.provenance import made_by
 
@@ -62,7 +64,7 @@ class Outputs:
     def check(self, overlay: bool, inputs: Iterable[Path]) -> None:
         """The folder exists (made if only its last part is missing) and may be written; nothing of others is in the way.
 
-        Results of an earlier benchlab run may be replaced; anything else only with `overwrite`; inputs never.
+        Results of an earlier benchlab run may be replaced; anything else only with `overwrite`; inputs and drive files never.
         Raises UsageError.
         """
         try:
@@ -86,6 +88,12 @@ class Outputs:
                 )
             if path.is_dir():
                 raise UsageError("is a folder, and a result goes there", file=path, hint="choose another --out")
+            if _is_drive_file(path):
+                raise UsageError(
+                    "is the record of a run on a bench, which no analysis replaces",
+                    file=path,
+                    hint="choose another --out",
+                )
             if (
                 path.exists()
                 and not self.overwrite
@@ -167,6 +175,13 @@ class Outputs:
         finally:
             with contextlib.suppress(FileNotFoundError):
                 lock.unlink()
+
+
+def _is_drive_file(path: Path) -> bool:
+    try:
+        return path.is_file() and schema_of(path) == DRIVE.name
+    except BenchlabError:
+        return False
 
 
 def _holder(lock: Path) -> str:

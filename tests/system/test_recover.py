@@ -2,6 +2,7 @@
 
 import json
 import os
+import platform
 import subprocess
 import sys
 from pathlib import Path
@@ -59,6 +60,40 @@ def test_a_cut_journal_gives_what_is_whole_and_says_what_is_not(benchlab, journa
     assert not read_drive_file(journal.with_suffix(".h5")).complete
 
 
+def test_with_strict_a_script_sees_that_a_journal_is_not_whole(benchlab, journal: Path) -> None:
+    assert benchlab("recover", journal, "--strict").code == 0
+    data = bytearray(journal.read_bytes())
+    data[len(data) // 2] ^= 4
+    journal.write_bytes(data)
+    assert benchlab("recover", journal, "--overwrite").code == 0
+    done = benchlab("recover", journal, "--overwrite", "--strict")
+    assert done.code == 3 and "the journal is not whole, and --strict was given" in done.err
+    data[len(data) // 2] ^= 4
+    journal.write_bytes(data)
+    cut(journal, 60)  # the record of the end
+    done = benchlab("recover", journal, "--overwrite", "--strict", "--json")
+    assert done.code == 3 and not done.json["complete"] and journal.with_suffix(".h5").exists()
+
+
+def test_one_recover_at_a_time(benchlab, journal: Path) -> None:
+    (journal.parent / ".trial.lock").write_text(f"process {os.getpid()} on {platform.node()}")
+    done = benchlab("recover", journal)
+    assert done.code == 2 and "is being written by another benchlab" in done.err
+    assert not journal.with_suffix(".h5").exists()
+
+
+def test_an_analysis_never_replaces_a_drive_file(benchlab, drawn_clip, journal: Path, tmp_path: Path) -> None:
+    """A film that is called as the run is: what was measured stays, whatever is asked for."""
+    assert benchlab("recover", journal).code == 0
+    drive = journal.with_suffix(".h5")
+    before = drive.read_bytes()
+    for more in ([], ["--overwrite"]):
+        done = benchlab("analyze", drawn_clip, "--pressure", drive, "--sync", "0", "--out", tmp_path, *more)
+        assert done.code == 2 and "trial.h5" in done.err and drive.read_bytes() == before
+    done = benchlab("analyze", drawn_clip, "--out", tmp_path, "--overwrite")
+    assert done.code == 2 and "the record of a run on a bench" in done.err and drive.read_bytes() == before
+
+
 def test_damage_in_the_middle_is_told(benchlab, journal: Path) -> None:
     data = bytearray(journal.read_bytes())
     data[len(data) // 2] ^= 4
@@ -74,7 +109,6 @@ def test_files_that_are_there_are_kept_unless_overwrite_is_given(benchlab, journ
     assert done.code == 2 and "trial.csv: exists" in done.err
     assert names(journal.parent) == ["trial.csv", "trial.journal"]
     assert benchlab("recover", journal, "--overwrite").code == 0
-    (journal.parent / "elsewhere").mkdir()
     assert benchlab("recover", journal, "--out", journal.parent / "elsewhere").code == 0
     assert names(journal.parent / "elsewhere") == ["trial.csv", "trial.h5", "trial.png"]
 
@@ -82,7 +116,7 @@ def test_files_that_are_there_are_kept_unless_overwrite_is_given(benchlab, journ
 def test_no_journal_no_folder_no_sample_are_refused_with_nothing_left(benchlab, journal: Path, tmp_path: Path) -> None:
     done = benchlab("recover", tmp_path / "none.journal")
     assert done.code == 2 and "no such file" in done.err
-    done = benchlab("recover", journal, "--out", tmp_path / "none")
+    done = benchlab("recover", journal, "--out", tmp_path / "none" / "none")
     assert done.code == 2 and "no such folder" in done.err
     (tmp_path / "a.journal").write_text("time_s,pressure_MPa\n0,0\n")
     done = benchlab("recover", tmp_path / "a.journal", "--json")
