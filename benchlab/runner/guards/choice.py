@@ -11,7 +11,9 @@ from benchlab.runner.guards.bend import BendGuard, least_expected_deg
 from benchlab.runner.guards.device import DeviceGuard, FaultGuard
 from benchlab.runner.guards.limits import Limits
 from benchlab.runner.guards.pressure import AboveGuard, FollowGuard
+from benchlab.runner.guards.rest import RestGuard
 from benchlab.runner.guards.sensor import SensorGuard
+from benchlab.runner.guards.swing import SwingGuard
 from benchlab.runner.tick import Tick
 
 
@@ -42,5 +44,7 @@ def guards_of(
         found += [
             SensorGuard("flex sensor", "V", lambda tick: tick.reading.flex_V, 0.02, high, limits),
             BendGuard(limits, expected_deg),
+            RestGuard(limits),
+            SwingGuard(limits),
         ]
     return found

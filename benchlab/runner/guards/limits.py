@@ -15,7 +15,8 @@ class Limits:
     late_s: a command after its deadline. follow_MPa, follow_s, lag_s: how far the measured pressure may lie from what a regulator with this
     lag would give, and for how long; five times as far, for a quarter of the time. above_MPa: over the bench's limit. bend_share, bend_s:
     the least share of the expected angle. stuck_s: a sensor that reads exactly the same while the pressure asked for goes by stuck_MPa.
-    sensor_s: without a number, or off the scale. fault_share: of the ticks of two seconds.
+    sensor_s: without a number, or off the scale. fault_share: of the ticks of two seconds. rest_deg: of the vented bench at the
+    beginning. swings: turns of a controlled pressure in ten seconds that its reference does not ask for.
     """
 
     late_s: float = 0.25
@@ -29,6 +30,8 @@ class Limits:
     stuck_MPa: float = 0.1
     sensor_s: float = 0.1
     fault_share: float = 0.1
+    rest_deg: float = 10.0
+    swings: float = 8.0
 
     @classmethod
     def of(cls, words: tuple[str, ...]) -> Limits:

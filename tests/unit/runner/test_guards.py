@@ -150,7 +150,7 @@ def test_an_angle_that_creeps_back_slowly_is_let_pass() -> None:
 
 def test_an_offset_of_the_flex_sensor_is_no_bend() -> None:
     shifted = setting("flex_V", lambda n, volts: 1.6 + 1e-3 * math.sin(n))
-    assert run(shifted, bench=NO_MONITOR).reason == "not following"
+    assert run(shifted, bench=NO_MONITOR, limits=Limits(rest_deg=math.inf)).reason == "not following"
 
 
 def test_the_stiffest_actuator_of_the_paper_is_let_pass_and_a_curve_asks_for_more() -> None:
@@ -270,7 +270,7 @@ def test_a_guard_whose_sensor_is_not_there_is_not_there() -> None:
         return [type(guard).__name__ for guard in guards_of(bench, 100.0)]
 
     assert names(replace(BENCH, monitor=None, flex=None)) == ["DeviceGuard", "FaultGuard"]
-    assert len(names(BENCH)) == 7
+    assert len(names(BENCH)) == 9
     nothing = replace(BENCH, monitor=None, flex=None)
     assert run(lambda n, f: f.update(pressure_MPa=math.nan, flex_V=math.nan), bench=nothing).reason == "completed"
 
