@@ -20,6 +20,15 @@ NOMINAL_GAIN_MPA_PER_V = 0.48 / 5
 UNCALIBRATED_CEILING_V = 3.50
 """Most volts, by the nominal supply, on a bench without a calibration."""
 
+ADC_STEPS = 1024
+"""Of the ATmega328P's ADC over its supply."""
+
+SUPPLY_V = 4.5, 5.5
+"""Lowest and highest supply that a bench may have."""
+
+REFERENCE_V = 1.0, 1.2
+"""The ATmega328P's own reference, 1.1 V: lowest and highest of any chip (datasheet, ADC characteristics). One chip's is steady."""
+
 HIGHEST_USB_V = 5.25
 """What a supply that nobody measured may be (USB 2.0, section 7.2.1): a code then gives more volts than it is taken for."""
 
@@ -56,7 +65,8 @@ class Bench:
     regulator: pressure over volts at its input. monitor: pressure over volts at its monitor output, None where that is not wired.
     flex: bending angle in degrees over volts of the flex sensor's divider, None where it is not calibrated.
     supply_V: of the microcontroller, which is the DAC's and the ADC's reference. gauge, date: how and when it was
-    calibrated. calibrated: whether it was at all; without, at most 3.50 V are given, and the limit holds for a supply of 5.25 V too.
+    calibrated. reference_counts: of 1.1 V at the ADC with that supply, as the firmware measures it; None where it was not.
+    calibrated: whether it was at all; without, at most 3.50 V are given, and the limit holds for a supply of 5.25 V too.
     InputError for numbers that no bench has, among them a regulator that would not vent at 0 V.
 
     >>> bench = Bench(name="a", calibrated=True)
@@ -70,6 +80,7 @@ class Bench:
     flex: Line | None = None
     limit_MPa: float = 0.35
     supply_V: float = 5.0
+    reference_counts: float | None = None
     gauge: str = ""
     date: str = ""
     calibrated: bool = False
@@ -77,7 +88,9 @@ class Bench:
     def __post_init__(self) -> None:
         demands = {
             "a limit_MPa above 0 and at most 1": 0 < self.limit_MPa <= 1,
-            "a supply_V from 4.5 to 5.5": 4.5 <= self.supply_V <= 5.5,
+            "a supply_V from 4.5 to 5.5": SUPPLY_V[0] <= self.supply_V <= SUPPLY_V[1],
+            "reference_counts of a reference from 1.0 to 1.2 V at its supply_V": self.reference_counts is None
+            or is_reference(self.reference_counts, self.supply_V),
             "a regulator whose gain is from 0.001 to 1 MPa/V": 0.001 <= self.regulator.gain <= 1,
             "a regulator that vents at 0 V: an offset_MPa of at most a tenth of the limit, and at least -1": (
                 -1 <= self.regulator.offset <= 0.1 * self.limit_MPa
@@ -122,6 +135,15 @@ class Bench:
             return 0
         return min(self._floor_code(self.regulator.inverse(pressure_MPa)), self.ceiling_code)
 
+    def supply_now_V(self, reference_counts: float) -> float | None:
+        """The supply on which this chip counts so much for its reference: counts go down as the supply goes up. None where they were
+        not counted at the calibration, as another chip's reference may differ by 10 %.
+
+        >>> round(Bench("a", supply_V=4.9, reference_counts=230.0).supply_now_V(220.8), 3)
+        5.104
+        """
+        return None if self.reference_counts is None else self.supply_V * self.reference_counts / reference_counts
+
     def volts(self, code: int) -> float:
         """Volts at the regulator's input at a code."""
         return self.supply_V * code / DAC_CODES
@@ -132,3 +154,22 @@ class Bench:
 
     def _floor_code(self, volts: float) -> int:
         return max(0, math.floor(volts / self.supply_V * DAC_CODES + 1e-9))
+
+
+def supply_between_V(reference_counts: float) -> tuple[float, float]:
+    """Lowest and highest supply on which any chip counts so much for its reference.
+
+    >>> [round(volts, 2) for volts in supply_between_V(225.3)]
+    [4.55, 5.45]
+    """
+    return REFERENCE_V[0] * ADC_STEPS / reference_counts, REFERENCE_V[1] * ADC_STEPS / reference_counts
+
+
+def is_reference(reference_counts: float, supply_V: float) -> bool:
+    """Whether some chip counts so much for its reference on this supply.
+
+    >>> is_reference(225.3, 5.0), is_reference(225.3, 4.5)
+    (True, False)
+    """
+    low, high = REFERENCE_V
+    return low <= reference_counts * supply_V / ADC_STEPS <= high

@@ -103,13 +103,13 @@ def calibrate(bench: str | None, gauge: str, out: Path, overwrite: bool, as_json
     if options["readings"] is not None:
         from benchlab.io.gauge_table import read_gauge_table
 
-        readings, supply_V = list(read_gauge_table(options["readings"])), options["supply_V"]
+        readings, supply_V, counts = list(read_gauge_table(options["readings"])), options["supply_V"], None
     else:
         from benchlab.cli.bench_measure import measure
 
-        readings, supply_V, gauge = measure(str(bench), gauge, options)
+        readings, supply_V, gauge, counts = measure(str(bench), gauge, options)
     settings = CalibrationSettings(
-        options["name"] or out.stem, gauge, supply_V, options["limit_MPa"], date, options["full_scale_MPa"]
+        options["name"] or out.stem, gauge, supply_V, options["limit_MPa"], date, options["full_scale_MPa"], counts
     )
     try:
         found = fit(readings, settings, out)

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from benchlab.bench import Bench, Line
+from benchlab.bench import Bench, Line, is_reference
 from benchlab.cli.bench_answers import Answers, ask_unit, ask_volts, pressure_of
 from benchlab.cli.bench_options import device_of
 from benchlab.errors import InputError, UsageError, printable
@@ -23,8 +23,8 @@ UNLIKE = 2.0
 """A reading that differs from what the nominal regulator gives by more than this factor is asked for once more."""
 
 
-def measure(text: str, gauge: str, options: dict[str, Any]) -> tuple[list[GaugeReading], float, str]:
-    """Readings, supply, and what the file says of the gauge, from an open bench."""
+def measure(text: str, gauge: str, options: dict[str, Any]) -> tuple[list[GaugeReading], float, str, float | None]:
+    """Readings, supply, what the file says of the gauge, and counts of the Nano's reference, from an open bench."""
     kind = device_of(text).kind
     simulated = gauge == TWIN_GAUGE
     if simulated and kind != "twin":
@@ -47,9 +47,11 @@ def measure(text: str, gauge: str, options: dict[str, Any]) -> tuple[list[GaugeR
             supply_V = SUPPLY_V
             with VirtualHold(device) as hold:
                 readings = take_readings(hold, levels, nominal, supply_V, twin_gauge(device), settle_s, _say)
-            return readings, supply_V, f"{SIMULATED} gauge of the twin"
-        answers = Answers()
-        supply_V, unit = options["supply_V"] or ask_volts(answers), options["unit"] or ask_unit(answers)
+            return readings, supply_V, f"{SIMULATED} gauge of the twin", None
+        answers, about = Answers(), device.about()
+        supply_V = options["supply_V"] or ask_volts(answers)
+        counts = _counted(about, supply_V)
+        unit = options["unit"] or ask_unit(answers)
         first = 1000 * levels[0]
         _say(
             f"the first level is {first:.0f} kPa by the nominal regulator; if the gauge shows far more, press Ctrl-C: it vents"
@@ -62,7 +64,25 @@ def measure(text: str, gauge: str, options: dict[str, Any]) -> tuple[list[GaugeR
         click.echo("vented", err=True)
         for fault in device.faults():
             _say(f"{fault.cause} ({fault.count})")
-    return readings, supply_V, gauge if kind == "serial" else f"{SIMULATED} bench ({kind}): {gauge}"
+    return readings, supply_V, gauge if kind == "serial" else f"{SIMULATED} bench ({kind}): {gauge}", counts
+
+
+def _counted(about: dict[str, Any], supply_V: float) -> float | None:
+    """What the Nano counted for its reference, kept beside the supply so that runs see it change. None from one that does not measure it.
+
+    InputError where no Nano counts so much on this supply, before anything is armed.
+    """
+    counts: float | None = about.get("reference_counts")
+    if counts is None:
+        _say(f"warning: firmware {about.get('firmware')} does not measure its supply, and runs will not see it change")
+        return None
+    if not is_reference(counts, supply_V):
+        low, high = about["supply_between_V"]
+        raise InputError(
+            f"the supply is given as {supply_V:g} V, and the Nano's own measurement says {low:.2f} to {high:.2f} V",
+            hint="measure between 5V and GND of the Nano, plugged in as it will be used",
+        )
+    return round(counts, 3)
 
 
 def _ask_gauge(answers: Answers, level: Level, unit: str) -> float:

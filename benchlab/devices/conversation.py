@@ -22,6 +22,9 @@ HELLO_S = 0.2
 TRY_S = 0.1
 TRIES = 5
 
+SUPPLY_S, SUPPLY_PAUSE_S = 0.5, 0.02
+"""After a boot or a vent the firmware takes 0.07 s to measure its supply; it is waited for so long, and asked so often."""
+
 
 class Conversation:
     """One side of a line to a Nano. tally: what went wrong on it."""
@@ -60,8 +63,9 @@ class Conversation:
         while (now := line.clock_s()) - began < BOOT_S and now - garbage_since < GARBAGE_S:
             payload = self.ask(HELLO, b"", HELLO_S)
             if payload is not None and (hello := hello_of(payload)):
+                hello = self._with_supply(self._of_this_protocol(hello))
                 self.tally.start(self.wire)
-                return self._of_this_protocol(hello)
+                return hello
             if self.wire.decoder.garbage > MUCH_GARBAGE:
                 garbage_since = min(garbage_since, now)
         garbage, waited = self.wire.decoder.garbage, f"no valid frame in {line.clock_s() - began:.0f} s"
@@ -76,6 +80,14 @@ class Conversation:
             file=line.name,
             hint="is the firmware on it (`benchlab bench firmware`), and is this the Nano's port?",
         )
+
+    def _with_supply(self, hello: Hello) -> Hello:
+        """The hello once the supply is measured, or as it is where the firmware never does."""
+        until = self.line.clock_s() + SUPPLY_S
+        while hello.reference == 0 and self.line.clock_s() < until:
+            self.wire.hear(self.line.read(SUPPLY_PAUSE_S))
+            hello = hello_of(self.ask(HELLO, b"", HELLO_S) or b"") or hello
+        return hello
 
     def _of_this_protocol(self, hello: Hello) -> Hello:
         if hello.protocol != PROTOCOL:

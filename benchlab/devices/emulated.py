@@ -6,7 +6,7 @@ import typing
 from pathlib import Path
 
 from benchlab.bench import Bench
-from benchlab.devices.emulator import NOMINAL_FLEX, NOMINAL_MONITOR, Emulator
+from benchlab.devices.emulator import NOMINAL_COUNTS, NOMINAL_FLEX, NOMINAL_MONITOR, Emulator
 from benchlab.devices.serial_bench import SerialBench
 from benchlab.devices.transport import SerialTransport
 
@@ -66,7 +66,14 @@ def emulated_bench() -> Bench:
     >>> bench.code(0.35), bench.monitor.of(5.0), bench.flex.of(2.6)
     (2986, 0.48, 110.0)
     """
-    return Bench("emulated", monitor=NOMINAL_MONITOR, flex=NOMINAL_FLEX, gauge="none: simulated", calibrated=True)
+    return Bench(
+        "emulated",
+        monitor=NOMINAL_MONITOR,
+        flex=NOMINAL_FLEX,
+        reference_counts=NOMINAL_COUNTS,
+        gauge="none: simulated",
+        calibrated=True,
+    )
 
 
 def open_emulated(bench: Bench, lockstep: bool, log: Path | None = None) -> SerialBench:

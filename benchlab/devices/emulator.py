@@ -14,7 +14,7 @@ from contextlib import suppress
 from importlib.resources import files
 from pathlib import Path
 
-from benchlab.bench import Bench, Line
+from benchlab.bench import ADC_STEPS, Bench, Line
 from benchlab.devices.firmware import firmware_text
 from benchlab.devices.interface import LostError
 from benchlab.errors import BenchError
@@ -27,6 +27,9 @@ LIBRARIES = ("-l:libsimavr.a", "-lelf", "-lm", "-lpthread")
 
 NOMINAL_MONITOR = Line(0.12, -0.12)
 """Of a bench whose monitor is not wired: 1 to 5 V for 0 to 0.48 MPa, as the regulator of the paper has."""
+
+NOMINAL_COUNTS = 225.0
+"""Of the chip's reference, 1.1 V, on a supply of 5 V: where a bench's calibration does not say."""
 
 NOMINAL_FLEX = Line(100.0, -150.0)
 NOMINAL_DEG_PER_MPA = 314.0
@@ -167,9 +170,19 @@ def _folder_of_this_process() -> Path:
 
 
 def _sensors(bench: Bench) -> list[str]:
-    """The supply, and each sensor's offset (mV) and gain (volts per volt at the DAC), so that the bench reads them as it is calibrated."""
-    regulator, words = bench.regulator, [f"{1000 * bench.supply_V:.0f}"]
+    """The supply, the chip's reference, and each sensor's offset (mV) and gain (volts per volt at the DAC), so that the bench reads
+    them as it is calibrated."""
+    regulator = bench.regulator
+    words = [f"{1000 * bench.supply_V:.0f}", f"{1000 * _reference_V(bench):.0f}"]
     for sensor, per_MPa in ((bench.monitor or NOMINAL_MONITOR, 1.0), (bench.flex or NOMINAL_FLEX, NOMINAL_DEG_PER_MPA)):
         gain = per_MPa * regulator.gain / sensor.gain
         words += [f"{1000 * sensor.inverse(per_MPa * regulator.offset):.6g}", f"{gain:.9g}"]
     return words
+
+
+def _reference_V(bench: Bench) -> float:
+    """So that the emulation counts what this bench did; half a count more, as simavr rounds down, to 1023 at the supply."""
+    counts, supply_V = bench.reference_counts, bench.supply_V
+    if counts is None:
+        counts, supply_V = NOMINAL_COUNTS, 5.0
+    return (counts + 0.5) / (ADC_STEPS - 1) * supply_V

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 PROTOCOL = 1
 """Of the frames; a firmware of another is refused."""
 
 HELLO, ARM, SET, VENT, STATUS = 1, 2, 3, 4, 5
-ADC_STEPS = 1024
 UNKNOWN_CODE = 0xFFFF
 """Of a DAC that does not acknowledge."""
 
 _HELLO = struct.Struct("<4B6H4B")
+_SUPPLY = struct.Struct("<HB")
 _ANSWER = struct.Struct("<4HI3H")
 _SET = struct.Struct("<HB")
 _ARM = struct.Struct("<H")
+MEASURES_SUPPLY = 1, 1
+"""First version, major and minor, whose hello ends with a measurement of the supply."""
+
 CAUSES = {1: "power", 2: "reset", 4: "brown-out", 8: "watchdog"}
 
 
@@ -24,7 +27,8 @@ CAUSES = {1: "power", 2: "reset", 4: "brown-out", 8: "watchdog"}
 class Hello:
     """What the firmware tells of itself. boot: number of its boots. boot_cause: MCUSR at boot, 0 where a bootloader cleared it.
 
-    dac_eeprom: the code that the DAC takes at power-on, 65535 unknown. adc_samples: conversions in each mean.
+    dac_eeprom: the code that the DAC takes at power-on, 65535 unknown. adc_samples: conversions in each mean. reference: sum of so many
+    conversions of the chip's own 1.1 V as reference_samples says; 0 until they are done, None from a firmware that does not measure it.
     """
 
     protocol: int
@@ -41,6 +45,13 @@ class Hello:
     adc_samples: int
     dac_address: int
     flags: int
+    reference: int | None = None
+    reference_samples: int = 1
+
+    @property
+    def reference_counts(self) -> float | None:
+        """The mean of a conversion of the reference; None where it was not measured."""
+        return self.reference / self.reference_samples if self.reference else None
 
     @property
     def version(self) -> str:
@@ -67,10 +78,14 @@ class Answer:
 
 
 def hello_of(payload: bytes) -> Hello | None:
-    """None where this is not a hello of this protocol."""
-    if len(payload) != _HELLO.size:
+    """None where this is no hello. What its version does not have yet is not read, nor what a later one has after it."""
+    if len(payload) < _HELLO.size:
         return None
-    return Hello(*_HELLO.unpack(payload))
+    hello = Hello(*_HELLO.unpack_from(payload))
+    if (hello.major, hello.minor) < MEASURES_SUPPLY or len(payload) < _HELLO.size + _SUPPLY.size:
+        return hello
+    reference, samples = _SUPPLY.unpack_from(payload, _HELLO.size)
+    return replace(hello, reference=reference, reference_samples=max(1, samples))
 
 
 def answer_of(payload: bytes) -> Answer | None:

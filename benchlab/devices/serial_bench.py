@@ -6,11 +6,10 @@ import math
 import typing
 from contextlib import suppress
 
-from benchlab.bench import Bench, LimitError
+from benchlab.bench import ADC_STEPS, Bench, LimitError
 from benchlab.devices.conversation import Conversation
 from benchlab.devices.interface import Fault, LostError, Reading, Status
 from benchlab.devices.messages import (
-    ADC_STEPS,
     ARM,
     SET,
     UNKNOWN_CODE,
@@ -20,6 +19,7 @@ from benchlab.devices.messages import (
     arm_payload,
     set_payload,
 )
+from benchlab.devices.supply import supply_notes, supply_told
 from benchlab.devices.transport import SerialTransport, Transport
 from benchlab.errors import BenchError
 
@@ -66,6 +66,7 @@ class SerialBench:
             )
         if hello.dac_eeprom != 0:
             notes.append("what the DAC gives at power-on could not be set to 0")
+        notes += supply_notes(hello, bench)
         return {
             "kind": self.kind,
             **self._line.about(),
@@ -80,6 +81,7 @@ class SerialBench:
             "boot": hello.boot,
             "boot_cause": hello.cause,
             "dac_address": hello.dac_address,
+            **supply_told(hello.reference_counts, bench),
             "notes": notes,
         }
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 SYNC = 0xB5
 HEAD = struct.Struct("<BBHB")
 CRC = struct.Struct("<H")
-MOST_PAYLOAD = 20
+MOST_PAYLOAD = 23
 ANSWER = 0x80
 NUMBERS = 1 << 16
 

@@ -1,7 +1,7 @@
 """Bench files: a bench's calibration as YAML, with the readings that it was fitted to.
 
-name, date, gauge, supply_V, limit_MPa, regulator {gain_MPa_per_V, offset_MPa, sd_MPa}, monitor (the same), flex {gain_deg_per_V,
-offset_deg, sd_deg, from}, readings [{volts, pressure_MPa, monitor_V, rising}].
+name, date, gauge, supply_V, reference_counts, limit_MPa, regulator {gain_MPa_per_V, offset_MPa, sd_MPa}, monitor (the same),
+flex {gain_deg_per_V, offset_deg, sd_deg, from}, readings [{volts, pressure_MPa, monitor_V, rising}].
 """
 
 from __future__ import annotations
@@ -73,6 +73,7 @@ class _BenchDocument(Document):
     date: str
     gauge: str = Field(min_length=1)
     supply_V: float
+    reference_counts: float | None = None
     limit_MPa: float = Bench("").limit_MPa
     regulator: _Pressure
     monitor: _Pressure | None = None
@@ -107,6 +108,7 @@ def read_bench_file(path: Path) -> BenchFile:
             flex=None if flex is None else Line(flex.gain_deg_per_V, flex.offset_deg, _or_nan(flex.sd_deg)),
             limit_MPa=found.limit_MPa,
             supply_V=found.supply_V,
+            reference_counts=found.reference_counts,
             gauge=found.gauge,
             date=_date(found.date).isoformat(),
             calibrated=True,
@@ -136,6 +138,7 @@ def write_bench_file(path: Path, file: BenchFile, comment: str = "") -> None:
         "date": bench.date,
         "gauge": bench.gauge,
         "supply_V": float(bench.supply_V),
+        **({} if bench.reference_counts is None else {"reference_counts": float(bench.reference_counts)}),
         "limit_MPa": float(bench.limit_MPa),
         "regulator": _pressure(bench.regulator),
     }

@@ -31,7 +31,7 @@ COVERED = 0.9
 @dataclass(frozen=True)
 class CalibrationSettings:
     """What a bench file says besides its lines. name: of the bench. supply_V: measured with a multimeter. date: ISO.
-    full_scale_MPa: at 5 V, as the regulator's label says."""
+    full_scale_MPa: at 5 V, as the regulator's label says. reference_counts: of the Nano on that supply, None where it was not asked."""
 
     name: str
     gauge: str
@@ -39,6 +39,7 @@ class CalibrationSettings:
     limit_MPa: float
     date: str
     full_scale_MPa: float = 5 * NOMINAL_GAIN_MPA_PER_V
+    reference_counts: float | None = None
 
 
 def check_calibration_out(out: Path, overwrite: bool) -> None:
@@ -75,6 +76,7 @@ def calibrate(readings: Sequence[GaugeReading], settings: CalibrationSettings, o
         flex=old.bench.flex if old else None,
         limit_MPa=settings.limit_MPa,
         supply_V=settings.supply_V,
+        reference_counts=settings.reference_counts,
         gauge=settings.gauge,
         date=datetime.date.fromisoformat(settings.date).isoformat(),
         calibrated=True,
@@ -122,6 +124,7 @@ def _summary(
         "date": bench.date,
         "gauge": bench.gauge,
         "supply_V": bench.supply_V,
+        "reference_counts": bench.reference_counts,
         "limit_MPa": bench.limit_MPa,
         "ceiling_code": bench.ceiling_code,
         "ceiling_V": round(bench.volts(bench.ceiling_code), 4),

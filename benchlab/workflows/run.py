@@ -22,6 +22,7 @@ from benchlab.runner.run import execute
 from benchlab.runner.stop import Stop, signals_to
 from benchlab.runner.tick import Tick
 from benchlab.runner.undisturbed import undisturbed
+from benchlab.workflows.bench_supply import check_supply
 from benchlab.workflows.bench_vent import vent_bench
 from benchlab.workflows.bench_zero import check_zero
 from benchlab.workflows.open_bench import open_bench
@@ -56,6 +57,8 @@ def drive(prepared: Prepared, stop: Stop, on_tick: Callable[[Tick], None] | None
             _make_folder(path.parent)
             about = device.about()
             _check_ceiling(prepared, about)
+            if prepared.spec.kind != "replay":  # whose supply was judged when it ran
+                check_supply(about, prepared.bench)
             if prepared.spec.kind == "serial":
                 check_zero(device, prepared.bench, RealClock())
             journal = JournalWriter(path, header_of(prepared, about))

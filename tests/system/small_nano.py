@@ -20,10 +20,12 @@ REGULATOR, MONITOR = Line(0.0965, -0.001), Line(0.12, -0.12)
 
 
 class SmallNano:
-    """`with SmallNano() as nano:` answers on nano.port. deaf_to: commands that are not answered. sticks: pressure that a vent leaves."""
+    """`with SmallNano() as nano:` answers on nano.port. deaf_to: commands that are not answered. sticks: pressure that a vent leaves.
+    counts: of its reference on its supply; None is a firmware that does not measure it."""
 
-    def __init__(self, ceiling_code: int = 2844, deaf_to: tuple[int, ...] = (), sticks_MPa: float = 0.0) -> None:
-        self.ceiling_code, self.deaf_to, self.sticks_MPa = ceiling_code, deaf_to, sticks_MPa
+    def __init__(self, ceiling_code: int = 2844, deaf_to: tuple[int, ...] = (), sticks_MPa: float = 0.0,
+                 counts: float | None = None) -> None:  # fmt: skip
+        self.ceiling_code, self.deaf_to, self.sticks_MPa, self.counts = ceiling_code, deaf_to, sticks_MPa, counts
         self.code, self.armed, self.silent = 0, False, False
         self.highest_code = 0
         self.vents: list[str] = []
@@ -81,8 +83,24 @@ class SmallNano:
         status = refused | Status.ARMED * self.armed | Status.SILENCE * self.silent
         if frame.command == HELLO:
             payload = struct.pack(
-                "<4B6H4B", PROTOCOL, 1, 0, 0, self.ceiling_code, 40, 200, 125, 1, 0, 1, ADC_SAMPLES, 0x62, int(status)
+                "<4B6H4B",
+                PROTOCOL,
+                1,
+                int(self.counts is not None),
+                0,
+                self.ceiling_code,
+                40,
+                200,
+                125,
+                1,
+                0,
+                1,
+                ADC_SAMPLES,
+                0x62,
+                int(status),
             )
+            if self.counts is not None:
+                payload += struct.pack("<HB", round(64 * self.counts), 64)
         else:
             micros = int(time.monotonic() * 1e6) % 2**32
             payload = struct.pack("<4HI3H", self.code, *self._adc(), int(status), micros, 1, 0, 0)

@@ -4,6 +4,7 @@
  * It holds the voltage that the regulator follows, and trusts nobody: at boot it sets the DAC to 0 before anything else; it gives
  * no pressure until it is armed; it refuses codes above its ceiling; it slows rises; it vents when nobody speaks, when its own
  * main loop hangs, and when the DAC does not acknowledge. Vent is code 0: it asks the regulator to vent. Use a relief valve too.
+ * While it is vented it measures its supply, which is the DAC's reference, so that the computer sees when that has changed.
  *
  * Wiring:  A4 SDA and A5 SCL to the MCP4725 (VCC to 5 V, OUT to the regulator's input, grounds together)
  *          A0 middle of the flex sensor's divider    A1 monitor output of the regulator    D2 trigger of the camera
@@ -34,7 +35,7 @@
 
 #define PROTOCOL 1 /* of the frames; the computer refuses another */
 #define VERSION_MAJOR 1
-#define VERSION_MINOR 0
+#define VERSION_MINOR 1
 #define VERSION_PATCH 0
 
 #define BAUD 500000UL      /* 16 MHz / 16 / 2: exact here, in the FT232 (3 MHz / 6) and in the CH340 (12 MHz / 24) */
@@ -42,13 +43,15 @@
 #define HUNG_MS 100        /* the main loop may not take longer */
 #define DAC_REFRESH_MS 10  /* the DAC is told its code again this often: so its loss is noticed, and undone */
 #define PARTIAL_MS 3       /* a frame that stops in the middle for this long is thrown away */
+#define REFERENCE_SAMPLES 64 /* conversions of the chip's own 1.1 V in a measurement of the supply; at most 64, to fit 16 bits */
 
 #if CEILING_CODE < 0 || CEILING_CODE > 4095
 #error "CEILING_CODE must be 0 to 4095"
 #endif
 
-enum { SYNC = 0xB5, HEAD = 5, CRC = 2, MOST = 20, ASKED = 3 }; /* bytes: of a head, a CRC, the longest payload, and asked */
+enum { SYNC = 0xB5, HEAD = 5, CRC = 2, MOST = 23, ASKED = 3 }; /* bytes: of a head, a CRC, the longest payload, and asked */
 enum { HELLO = 1, ARM = 2, SET = 3, VENT = 4, STATUS = 5, ANSWER = 0x80 };
+enum { FLEX = 0, MONITOR = 1, REFERENCE = 14 }; /* inputs of the ADC */
 enum { ARMED = 1, SLEWING = 2, SILENCE = 4, WATCHDOG = 8, REFUSED = 16, DAC_LOST = 32, REBOOTED = 128 };
 
 #define UNKNOWN 0xFFFF                      /* code of a DAC that does not acknowledge */
@@ -66,6 +69,7 @@ static uint32_t heard_ms;            /* when the last valid command came */
 static volatile uint32_t clock_ms;
 static volatile uint8_t hung_ms;     /* since the main loop came by */
 static volatile uint16_t samples[2][ADC_SAMPLES]; /* the last conversions: flex, monitor */
+static volatile uint16_t reference;  /* sum of the last REFERENCE_SAMPLES conversions of 1.1 V; 0 while they are not done */
 static volatile uint8_t in_ring[64], in_head, in_tail, out_ring[64], out_head, out_tail;
 
 static uint8_t inbox[HEAD + ASKED + CRC], in_box;
@@ -239,25 +243,51 @@ void first_of_all(void)
 
 /* ---- Clock and ADC ---- */
 
+static void listen_to(uint8_t input) /* against the supply */
+{
+    ADMUX = (1 << REFS0) | input;
+}
+
+static void convert(uint8_t input)
+{
+    listen_to(input);
+    ADCSRA |= 1 << ADSC;
+}
+
+/* Each millisecond: the reference, while not armed, then flex, then monitor. The reference is weak and takes 0.35 ms to pull the ADC
+ * down from the monitor's volts: it is listened to from the end of the one millisecond's conversions to the start of the next. */
 ISR(TIMER1_COMPA_vect)
 {
     clock_ms++;
-    ADMUX = 1 << REFS0; /* flex, against the supply */
-    ADCSRA |= 1 << ADSC;
+    convert((ADMUX & 15) == REFERENCE ? REFERENCE : FLEX);
     if (++hung_ms >= HUNG_MS)
         hung();
 }
 
 ISR(ADC_vect)
 {
-    static uint8_t at;
-    if (ADMUX & 1) {
+    static uint8_t at, summed;
+    static uint16_t sum;
+    switch (ADMUX & 15) {
+    case REFERENCE:
+        sum += ADC;
+        if (++summed == REFERENCE_SAMPLES) {
+            reference = sum;
+            sum = summed = 0;
+        }
+        convert(FLEX);
+        break;
+    case FLEX:
+        samples[0][at] = ADC;
+        convert(MONITOR);
+        break;
+    default:
         samples[1][at] = ADC;
         at = (at + 1) % ADC_SAMPLES;
-    } else {
-        samples[0][at] = ADC;
-        ADMUX = (1 << REFS0) | 1; /* monitor */
-        ADCSRA |= 1 << ADSC;
+        if (flags & ARMED)
+            reference = sum = summed = 0; /* measured anew after the vent */
+        else
+            listen_to(REFERENCE);
     }
 }
 
@@ -278,6 +308,14 @@ static uint32_t now_us(void)
         ms++;
     sei();
     return ms * 1000 + half_us / 2;
+}
+
+static uint16_t sum_of_reference(void)
+{
+    cli();
+    uint16_t sum = reference;
+    sei();
+    return sum;
 }
 
 static uint16_t sum_of(uint8_t sensor)
@@ -358,6 +396,8 @@ static void tell_hello(uint16_t number)
     *at++ = ADC_SAMPLES;
     *at++ = DAC_ADDRESS;
     *at++ = flags;
+    at = put16(at, sum_of_reference());
+    *at++ = REFERENCE_SAMPLES;
     answer(number, HELLO, payload, at - payload);
 }
 

@@ -2,8 +2,9 @@
  * Runs the firmware of the Nano in simavr, with an MCP4725 on its two-wire bus, a regulator that lags and two sensors.
  * A process of its own, told what to do by lines on standard input; it ends when that is closed.
  *
- *     emulator FIRMWARE.elf lockstep|pty SUPPLY_mV MONITOR_mV MONITOR_GAIN FLEX_mV FLEX_GAIN [LOG]
+ *     emulator FIRMWARE.elf lockstep|pty SUPPLY_mV REFERENCE_mV MONITOR_mV MONITOR_GAIN FLEX_mV FLEX_GAIN [LOG]
  *
+ * SUPPLY_mV is the reference of DAC and ADC. REFERENCE_mV is the chip's own, nominally 1100, which its ADC can measure.
  * The monitor shows MONITOR_mV + MONITOR_GAIN · (volts at the DAC, lagged by LAG_S), and so does the flex sensor.
  * It says `ready`, or the name of its pty; then each line is answered by `T CODE EEPROM TRIGGERS HEX`: virtual microseconds, the codes
  * of the DAC and of its memory, pulses for the camera so far, and bytes that the firmware sent (`-` for none).
@@ -11,6 +12,7 @@
  *     run T              let it go on until T (lockstep: time moves by this and the next alone)
  *     ask T1 T2 HEX      let it go on until T1, give it these bytes, and go on until it has answered, or T2
  *     dac lost|back|skip take the DAC off the bus; for one command        flex MV|auto, monitor MV|auto   hold a sensor
+ *     supply MV          another supply, of everything but the regulator and the sensors
  *     hang, deaf         the main loop hangs; with interrupts off             reset, power  as the button, as the plug
  *     memory CODE        what the DAC takes at power-on   state              nothing
  *
@@ -46,6 +48,7 @@
 #define LAG_S 0.1
 #define MCUSR_AT 0x54
 #define TRAP 0x7FF0 /* unused flash, where `rjmp .` is put */
+#define REFERENCE_MUX 14
 #define FLEX 0
 #define MONITOR 1
 
@@ -256,6 +259,18 @@ static void hang(int deaf)
     note("hang", deaf);
 }
 
+static void supply(int mV)
+{
+    avr->vcc = avr->avcc = avr->aref = mV;
+}
+
+static void reference(int mV)
+{
+    for (avr_io_t *io = avr->io_port; io; io = io->next)
+        if (!strcmp(io->kind, "adc"))
+            ((avr_adc_t *)io)->muxmode[REFERENCE_MUX].src = mV;
+}
+
 static void begin(const char *path, char **words)
 {
     elf_firmware_t firmware = {0};
@@ -269,11 +284,12 @@ static void begin(const char *path, char **words)
     firmware.frequency = MHZ * 1000000;
     avr_load_firmware(avr, &firmware);
     avr->frequency = MHZ * 1000000;
-    avr->vcc = avr->avcc = avr->aref = atoi(words[0]);
+    supply(atoi(words[0]));
+    reference(atoi(words[1]));
     for (int n = 0; n < 2; n++) { /* monitor first, as it is asked first */
         int which = n ? FLEX : MONITOR;
-        sensor[which].offset_mV = atof(words[1 + 2 * n]);
-        sensor[which].gain = atof(words[2 + 2 * n]);
+        sensor[which].offset_mV = atof(words[2 + 2 * n]);
+        sensor[which].gain = atof(words[3 + 2 * n]);
         sensor[which].held_mV = NAN;
     }
     avr->sleep = no_sleep;
@@ -323,6 +339,9 @@ static void obey(char *line, int lockstep)
         hold(FLEX, value);
     } else if (!strcmp(what, "monitor")) {
         hold(MONITOR, value);
+    } else if (!strcmp(what, "supply")) {
+        regulator_follow();
+        supply(atoi(value));
     } else if (!strcmp(what, "hang") || !strcmp(what, "deaf")) {
         hang(*what == 'd');
     } else if (!strcmp(what, "reset")) {
@@ -396,12 +415,12 @@ static void live(int pty) /* in real time; time that the computer spent elsewher
 int main(int count, char **words)
 {
     static char line[1 << 18];
-    if (count < 8) {
-        fprintf(stderr, "emulator FIRMWARE.elf lockstep|pty SUPPLY_mV MONITOR_mV MONITOR_GAIN FLEX_mV FLEX_GAIN [LOG]\n");
+    if (count < 9) {
+        fprintf(stderr, "emulator FIRMWARE.elf lockstep|pty SUPPLY_mV REFERENCE_mV MONITOR_mV MONITOR_GAIN FLEX_mV FLEX_GAIN [LOG]\n");
         return 2;
     }
-    if (count > 8 && !(event_log = fopen(words[8], "w"))) {
-        perror(words[8]);
+    if (count > 9 && !(event_log = fopen(words[9], "w"))) {
+        perror(words[9]);
         return 1;
     }
     if (event_log)

@@ -3,6 +3,7 @@
 import itertools
 import math
 import random
+import struct
 import subprocess
 from collections.abc import Iterator
 from importlib.resources import files
@@ -15,7 +16,7 @@ from benchlab.devices import emulator
 from benchlab.devices.emulator import AVR, build
 from benchlab.devices.firmware import firmware_text
 from benchlab.devices.interface import Status
-from benchlab.devices.messages import ARM, SET, UNKNOWN_CODE, VENT, answer_of, arm_payload, set_payload
+from benchlab.devices.messages import ARM, HELLO, SET, UNKNOWN_CODE, VENT, answer_of, arm_payload, set_payload
 from benchlab.devices.wire import Frame, Wire, encode
 from tests.unit.devices.nano import BENCH, Nano, needs_emulator
 
@@ -62,12 +63,55 @@ def test_the_dacs_power_on_value_is_programmed_once(nano: Nano) -> None:
 def test_hello_tells_version_limits_and_boot(nano: Nano) -> None:
     nano.hello()
     said = nano.said
-    assert (said.protocol, said.version, said.ceiling_code, said.cause) == (1, "1.0.0", CEILING, "power")
+    assert (said.protocol, said.version, said.ceiling_code, said.cause) == (1, "1.1.0", CEILING, "power")
     assert (said.slew_codes_per_ms, said.silence_ms, said.watchdog_ms, said.adc_samples) == (40, 200, 100, 8)
     nano.tell("reset")
     nano.run(0.1)
     nano.hello()
     assert (nano.said.boot, nano.said.cause) == ((said.boot + 1) % 65536, "reset")
+
+
+def test_hello_is_these_bytes(nano: Nano) -> None:
+    """The layout in docs/firmware.md, number by number."""
+    nano.run(0.2)
+    nano.line.write(nano.wire.ask(HELLO))
+    payload = nano.wire.hear(nano.line.read(0.05)) or b""
+    told = struct.unpack("<BBBBHHHHHHBBBBHB", payload)
+    assert told == (1, 1, 1, 0, CEILING, 40, 200, 100, 0, 0, 1, 8, 0x62, REBOOTED, 64 * 225, 64)
+
+
+def test_the_supply_is_measured_after_the_boot_and_after_each_run(nano: Nano) -> None:
+    """Of 1.1 V on 5 V the ADC counts 225 of 1023; hello says 0 until 64 conversions, one a millisecond, are done."""
+    nano.run(0.2)
+    nano.tell("reset")
+    nano.run(0.03)
+    nano.hello()
+    assert nano.said.reference == 0 and nano.said.reference_counts is None
+    nano.run(0.07)
+    nano.hello()
+    assert nano.said.reference_counts == 225
+    nano.arm()
+    nano.hold(100, 0.1)
+    nano.tell("supply 4700")
+    nano.hold(100, 0.1)
+    nano.hello()
+    assert nano.said.reference == 0  # what was measured before the run is not told after it
+    nano.run(0.07)
+    nano.hello()
+    assert nano.said.reference_counts == 1100 * 1023 // 4700
+
+
+def test_the_sensors_read_the_same_while_the_supply_is_measured(nano: Nano) -> None:
+    """It is measured while the bench is vented, and not while it is armed."""
+    nano.tell("flex 1000")
+    nano.tell("monitor 4000")
+    nano.arm()
+    nano.hold(0, 0.1)
+    armed = nano.status()
+    nano.vent()
+    nano.run(0.1)
+    vented = nano.status()
+    assert (armed.flex, armed.monitor) == (vented.flex, vented.monitor) == (8 * 204, 8 * 818)
 
 
 def test_disarmed_it_gives_no_pressure(nano: Nano) -> None:

@@ -51,7 +51,7 @@ def causes(device: SerialBench) -> dict[str, int]:
 def test_what_it_says_of_itself(line: FaultyLine) -> None:
     about = SerialBench(line, BENCH).about()
     assert about["ceiling_code"] == BENCH.ceiling_code and about["ceiling_MPa"] == BENCH.ceiling_MPa
-    assert about["firmware"] == "1.0.0" and about["notes"] == []
+    assert about["firmware"] == "1.1.0" and about["notes"] == []
     assert about["slew_MPa_per_s"] == pytest.approx(40_000 * 5 / 4096 * 0.096)
 
 
@@ -106,13 +106,13 @@ def test_a_firmware_with_a_higher_ceiling_is_told(line: FaultyLine) -> None:
 
 def test_another_protocol_is_refused(line: FaultyLine, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(conversation, "PROTOCOL", 9)
-    with pytest.raises(BenchError, match=r"firmware 1.0.0 speaks protocol 1, this benchlab 9; .*bench firmware"):
+    with pytest.raises(BenchError, match=r"firmware 1.1.0 speaks protocol 1, this benchlab 9; .*bench firmware"):
         SerialBench(line, BENCH)
 
 
 def test_a_nano_that_still_boots_is_waited_for(line: FaultyLine) -> None:
     line.down.extend(["lose"] * 10)
-    assert SerialBench(line, BENCH).about()["firmware"] == "1.0.0"
+    assert SerialBench(line, BENCH).about()["firmware"] == "1.1.0"
 
 
 def test_nothing_that_answers_is_told(line: FaultyLine) -> None:
