@@ -24,7 +24,7 @@ class DrivenPressure:
 def read_driven_pressure(path: Path) -> DrivenPressure:
     """The pressure measured in a run or, where none was, what was asked for, which a warning says. Raises as `read_drive_file`."""
     run = read_drive_file(path)
-    warnings = [f"{path.name}: {words}" for words in run.losses_told]
+    warnings = [f"{path.name}: lost {words}" for words in run.losses_told]
     if words := origin(run.header):
         warnings.append(f"{path.name} is no run on a bench of metal: {words}")
     field = "pressure_MPa"

@@ -12,6 +12,7 @@ import numpy as np
 from benchlab.io.angle_table import AngleTable, is_series, read_angle_table
 from benchlab.io.drive_file import SCHEMA as DRIVE
 from benchlab.io.drive_file import origin, read_drive_file, sensor_sd
+from benchlab.io.drive_gaps import gaps_of
 from benchlab.io.nexus import schema_of
 from benchlab.io.run_file import read_run_file
 from benchlab.io.study_values import CycleValue, nan_mean
@@ -73,7 +74,8 @@ def _of_drive(path: Path, target: Target) -> Readings:
     warnings += ["its angle is by the flex sensor, not from a film"]
     if stop["reason"] != "completed":
         warnings.append(f"the run was not completed: {stop['reason']}")
-    warnings += run.losses_told
+    warnings += [f"lost {words}" for words in run.losses_told]
+    warnings += [gap.words for gap in gaps_of(run)]
     angle, pressure = (np.asarray(samples[name], dtype=float) for name in ("angle_deg", "pressure_MPa"))
     if not np.isfinite(angle).any():
         return _without("no angle was measured: the flex sensor is not there, or not calibrated", target, warnings)

@@ -129,7 +129,7 @@ def test_damage_in_the_middle_is_passed_over_and_told(whole):
     whole.write_bytes(data)
     read = read_journal(whole)
     assert read.complete
-    assert read.losses_told == [f"{ends[53] - ends[50]} bytes in 3 records from byte {ends[50]} on lost: damaged"]
+    assert read.losses_told == [f"3 records at byte {ends[50]}, of which {ends[53] - ends[50]} bytes are left: damaged"]
     assert set(range(400)) - set(read.samples["tick"].tolist()) == {49, 50, 51}  # the trigger is a record too
 
 
@@ -138,7 +138,7 @@ def test_records_that_are_gone_leave_a_gap_that_is_told(whole):
     ends = ends_of(data)
     whole.write_bytes(data[: ends[50]] + data[ends[53] :])
     read = read_journal(whole)
-    assert read.losses_told == [f"3 records missing at byte {ends[50]}"]
+    assert read.losses_told == [f"3 records at byte {ends[50]}: missing"]
     assert len(read.samples) == 397
 
 

@@ -82,6 +82,48 @@ def test_closed_loop_shows_what_was_asked_for(tmp_path):
     assert labels(angle) == ["asked for", "by the flex sensor"]
 
 
+def test_no_line_goes_across_a_hole_and_the_words_tell_it(tmp_path):
+    holed = journal(tmp_path, np.delete(samples_of(), np.r_[120:170]))
+    figure = draw_drive_figure(holed)
+    for line in (*figure.axes[0].lines[:2], figure.axes[1].lines[0]):
+        x, y = line.get_data()
+        (at,) = np.flatnonzero(np.isnan(x) | np.isnan(y))
+        assert x[at - 1] == pytest.approx(119 / 50) and x[at + 1] == pytest.approx(170 / 50)
+    for line in figure.axes[2].lines:
+        assert not np.isfinite(line.get_ydata()[120])
+    assert "no sample of 50 ticks between 2.380 and 3.400 s" in words(figure)[1]
+
+
+def test_a_long_run_with_a_hole_is_broken_too(tmp_path):
+    samples = np.resize(samples_of(), 45_000)
+    samples["tick"], samples["time_s"] = np.arange(45_000), np.arange(45_000) / 50
+    x, y = draw_drive_figure(journal(tmp_path, np.delete(samples, np.r_[30_000:31_000]))).axes[0].lines[1].get_data()
+    (at,) = np.flatnonzero(np.isnan(y))
+    assert x[at - 1] < 600 < 620 <= x[at + 1]
+
+
+def test_what_was_asked_for_lies_under_what_was_measured(tmp_path):
+    lines = {line.get_label(): line for line in draw_drive_figure(journal(tmp_path)).axes[0].lines}
+    assert lines["asked for"].get_zorder() < lines["measured"].get_zorder()
+
+
+def test_a_pause_has_a_ground_and_near_marks_share_their_words(tmp_path, monkeypatch):
+    monkeypatch.setitem(EVENTS, 105, [{"kind": "mark", "tick": 105, "time_s": 2.1, "text": "top"}])
+    monkeypatch.setitem(EVENTS, 106, [{"kind": "pause", "tick": 106, "time_s": 2.12}])
+    monkeypatch.setitem(EVENTS, 150, [{"kind": "resume", "tick": 150, "time_s": 3.0}])
+    pressure, angle, _ = draw_drive_figure(journal(tmp_path)).axes
+    assert [text.get_text() for text in pressure.texts] == ["camera, up $x_{$", "top, pause", "second"]
+    for ax in (pressure, angle):
+        (ground,) = ax.patches
+        assert ground.get_x() == pytest.approx(2.12) and ground.get_width() == pytest.approx(0.88)
+
+
+def test_words_too_long_for_a_line_go_on_in_the_next(tmp_path):
+    why = " ".join(f"reason{index}" for index in range(40))
+    told = words(draw_drive_figure(journal(tmp_path, stop={**STOPPED, "words": why})))
+    assert "reason39" in " ".join(told[1:4]) and "…" not in " ".join(told[1:4])
+
+
 @pytest.mark.parametrize("count", [1, 2, 45_000])
 def test_short_and_long_runs_are_drawn(tmp_path, count):
     samples = np.resize(samples_of(), count)
