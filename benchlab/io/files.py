@@ -58,23 +58,45 @@ def cannot_write(error: OSError, path: Path) -> InputError:
 
 
 def check_new_file(path: Path, overwrite: bool = False) -> None:
-    """Raises UsageError where a file at `path` would replace another, or has no folder to lie in."""
+    """Raises UsageError where a file at `path` would replace another, or has no folder to lie in; `written_whole` makes the last one."""
+    check_new_folder(path.parent)
     if path.is_dir():
         raise UsageError("is a folder", file=path, hint="give the name of a file in it")
     if path.exists() and not overwrite:
         raise UsageError("exists", file=path, hint="choose another --out, or replace it with --overwrite")
-    if not path.absolute().parent.is_dir():
-        raise UsageError("no such folder", file=path.parent, hint="make it, or choose another --out")
+
+
+def check_new_folder(folder: Path) -> None:
+    """Raises UsageError where files cannot lie in `folder`, or it cannot be made: only the last part of its path may be missing."""
+    if folder.exists() and not folder.is_dir():
+        raise UsageError("cannot be used as output folder: it is a file", file=folder, hint="choose another --out")
+    there = folder if folder.is_dir() else folder.absolute().parent
+    if not there.is_dir():
+        raise UsageError("no such folder", file=folder.parent, hint="make it, or choose another --out")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise UsageError("the output folder is read-only", file=there, hint="choose another --out")
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder whose last part alone is missing; one that is there may be written to. Raises UsageError as `check_new_folder`."""
+    check_new_folder(folder)
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        what = f"cannot be used as output folder: {reason_of(error)}"
+        raise UsageError(what, file=folder, hint="choose another --out") from error
 
 
 @contextmanager
 def written_whole(path: Path) -> Iterator[Path]:
     """A temporary name beside `path` to write to; on success it is flushed to disk and takes the place of `path`.
 
+    The last folder of `path` is made where it is missing.
     If the block raises, nothing at `path` has changed and the temporary file is gone.
     Raises InputError where the disk refuses (full, read-only), with the reason.
     """
     try:
+        path.parent.mkdir(exist_ok=True)
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem[:40]}-", suffix=path.suffix)
         os.close(handle)
     except OSError as error:

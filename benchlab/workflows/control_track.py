@@ -11,7 +11,7 @@ import numpy as np
 
 from benchlab.control.tracking import Tracking, track
 from benchlab.errors import InputError, UsageError
-from benchlab.io.files import cannot_write, check_new_file, reason_of, written_whole
+from benchlab.io.files import cannot_write, check_new_file, written_whole
 from benchlab.io.nexus import plain
 from benchlab.report.figures import save_png
 from benchlab.report.tracking_figure import TrackedRun, draw_tracking_figure
@@ -62,13 +62,7 @@ def track_run(
 
 
 def _paths(out: Path, stem: str, overwrite: bool) -> list[Path]:
-    """The JSON file and the picture, in a folder that is made where its own folder is there."""
-    if not out.absolute().parent.is_dir():
-        raise UsageError("no such folder", file=out.parent, hint="make it, or choose another --out")
-    try:
-        out.mkdir(exist_ok=True)
-    except OSError as error:
-        raise UsageError(f"cannot be made: {reason_of(error)}", file=out, hint="choose another --out") from error
+    """The JSON file and the picture."""
     paths = [out / f"{stem}.tracking{suffix}" for suffix in (".json", ".png")]
     for path in paths:
         check_new_file(path, overwrite)

@@ -8,9 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from benchlab.errors import UsageError
 from benchlab.io.design_file import write_design
-from benchlab.io.files import cannot_write, check_new_file, written_whole
+from benchlab.io.files import cannot_write, check_new_file, make_folder, written_whole
 from benchlab.workflows.design_wish import SLW, TW, AngleMap, Wish
 from benchlab.workflows.simulated import Conditions
 
@@ -28,10 +27,7 @@ def design_paths(out: Path, wish: Wish, overwrite: bool) -> dict[str, Path]:
     stem = f"design_{wish.angle_deg:g}deg"
     paths = {"table": out / f"{stem}.csv", "figure": out / f"{stem}.png"}
     paths |= {name: out / f"{stem}_{name}.yaml" for name in ("balanced", *PREFERENCES)}
-    if not out.absolute().is_dir():
-        if out.exists() or not out.absolute().parent.is_dir():
-            raise UsageError("no such folder", file=out, hint="make it, or choose another --out")
-        out.mkdir()
+    make_folder(out)
     for path in paths.values():
         check_new_file(path, overwrite)
     return paths

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import os
 import tempfile
 from pathlib import Path
 from typing import Any
 
 from benchlab.errors import InputError, UsageError
 from benchlab.io.drive_file import origin, write_drive_file
+from benchlab.io.drive_gaps import gaps_of
 from benchlab.io.drive_table import write_drive_csv
-from benchlab.io.files import cannot_write, check_new_file, check_regular_file, reason_of, sha256, written_whole
+from benchlab.io.files import cannot_write, check_new_file, check_regular_file, make_folder, sha256, written_whole
 from benchlab.io.journal import Journal, read_journal, still_written
 from benchlab.report.drive_figure import draw_drive_figure
 from benchlab.report.figures import save_png
@@ -36,25 +36,12 @@ def write_results(path: Path, out: Path | None = None, overwrite: bool = False) 
     journal = read_journal(path)
     if not len(journal.samples):
         raise InputError("holds no sample", file=path, hint="the run ended before its first tick was answered")
-    _make_folder(folder)
+    make_folder(folder)
     with Outputs(folder, path.stem).locked():
         for output in outputs:
             check_new_file(output, overwrite)
         _write_together(journal, path, outputs)
     return {"journal": str(path), **summary(journal), "outputs": [str(output) for output in outputs]}
-
-
-def _make_folder(folder: Path) -> None:
-    """It is there afterwards, and may be written to; made if only its last part is missing."""
-    try:
-        folder.mkdir(exist_ok=True)
-    except FileNotFoundError:
-        raise UsageError("no such folder", file=folder.parent, hint="make it, or choose another --out") from None
-    except OSError as error:
-        what = f"cannot be used as output folder: {reason_of(error)}"
-        raise UsageError(what, file=folder, hint="choose another --out") from error
-    if not os.access(folder.absolute(), os.W_OK | os.X_OK):
-        raise UsageError("the output folder is read-only", file=folder, hint="choose another --out")
 
 
 def _write_together(journal: Journal, path: Path, outputs: list[Path]) -> None:
@@ -98,4 +85,6 @@ def summary(journal: Journal) -> dict[str, Any]:
         "events": len(journal.events),
         "lost_bytes": journal.lost_bytes,
         "lost": journal.losses_told,
+        "missing_ticks": sum(gap.ticks for gap in gaps_of(journal)),
+        "gaps": [gap.words for gap in gaps_of(journal)],
     }

@@ -14,7 +14,7 @@ import numpy as np
 from benchlab.errors import BenchlabError, UsageError
 from benchlab.force.curve import BlockedForce, blocked_force
 from benchlab.force.curve_json import blocked_force_json, record_json
-from benchlab.io.files import check_new_file, check_regular_file, sha256, written_whole
+from benchlab.io.files import check_new_file, check_regular_file, make_folder, sha256, written_whole
 from benchlab.io.force_file import write_force_csv, write_force_file
 from benchlab.io.machine_export import MachineExport, export_document, read_machine_export
 from benchlab.io.nexus import plain
@@ -206,8 +206,7 @@ def _refuse_copies(read: Sequence[ForceRead]) -> None:
 
 def _check_outputs(paths: Sequence[Path], inputs: Sequence[ForceInput], folder: Path, overwrite: bool) -> None:
     read = {path.resolve() for one in inputs for path in (one.path, one.pressure) if path is not None}
-    if not folder.exists() and folder.absolute().parent.is_dir():
-        folder.mkdir()
+    make_folder(folder)
     for path in paths:
         if path.resolve() in read:
             raise UsageError("is read here and would be replaced", file=path, hint="choose another --out")

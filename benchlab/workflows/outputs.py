@@ -17,7 +17,7 @@ from typing import Any, Self
 import benchlab
 from benchlab.errors import BenchlabError, UsageError
 from benchlab.io.drive_file import SCHEMA as DRIVE
-from benchlab.io.files import cannot_write, check_regular_file, reason_of, sha256
+from benchlab.io.files import cannot_write, check_regular_file, make_folder, sha256
 from benchlab.io.nexus import schema_of
 from benchlab.io.run_file import read_provenance
 from benchlab.workflows.provenance import made_by
@@ -67,18 +67,7 @@ class Outputs:
         Results of an earlier benchlab run may be replaced; anything else only with `overwrite`; inputs and drive files never.
         Raises UsageError.
         """
-        try:
-            self.folder.mkdir(exist_ok=True)
-        except FileNotFoundError:
-            raise UsageError(
-                "no such folder", file=self.folder.parent, hint="make it, or choose another --out"
-            ) from None
-        except OSError as error:
-            raise UsageError(
-                f"cannot be used as output folder: {reason_of(error)}", file=self.folder, hint="choose another --out"
-            ) from error
-        if not os.access(self.folder, os.W_OK | os.X_OK):
-            raise UsageError("the output folder is read-only", file=self.folder, hint="choose another --out")
+        make_folder(self.folder)
         ours = {} if self.overwrite else self._written_before()
         read = {path.resolve() for path in inputs}
         for path in self.paths(overlay):

@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 import hashlib
-import math
-import os
 import shutil
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from datetime import datetime
 from pathlib import Path
+from typing import Any
 
 from benchlab.actuator import ShellDesign
 from benchlab.bench import Bench
 from benchlab.control.controller import Controller, controller_of
 from benchlab.errors import InputError, UsageError
-from benchlab.protocol.plan import Control, Plan
+from benchlab.io.files import check_new_folder
+from benchlab.protocol.plan import Plan
 from benchlab.runner.guards.bend import expected_along, least_expected_deg
 from benchlab.runner.guards.limits import Limits
 from benchlab.twin.curve import ResponseCurve
 from benchlab.twin.settings import TwinSettings
 from benchlab.workflows.open_bench import Spec, bench_doubts, bench_of, spec_of, twin_of
+from benchlab.workflows.run_control import check_reach, choose, control_told, two_curves
 from benchlab.workflows.run_curve import actuator_of
 
 REAL_RATES_HZ = (10.0, 500.0)
@@ -57,8 +58,8 @@ class RunSettings:
 
 @dataclass(frozen=True)
 class Prepared:
-    """A run that may begin. text, sha256: of the protocol. control, controller: None in open loop. curve: of the actuator, None where
-    nobody knows it; twin: None for another bench."""
+    """A run that may begin. text, sha256: of the protocol. control: as `control_told`; it and controller are None in open loop.
+    curve: what controller and guards believe of the actuator, None where nobody knows it; twin: None for another bench."""
 
     settings: RunSettings
     spec: Spec
@@ -70,7 +71,7 @@ class Prepared:
     limits: Limits
     curve: ResponseCurve | None
     twin: TwinSettings | None
-    control: Control | None
+    control: dict[str, Any] | None
     controller: Controller | None
     stem: Path
     warnings: tuple[str, ...]
@@ -113,12 +114,15 @@ def prepare(protocol: str, settings: RunSettings) -> Prepared:
     check_limits(plan, bench)
     _check_rate(plan, spec)
     curve = actuator.curve if actuator is not None else None if twin is None else twin.curve
-    control, warnings = _control(plan, bench, settings)
-    controller = None
-    if control is not None:
+    chosen = choose(plan, bench, settings.control)
+    controller, warnings = None, two_curves(None if actuator is None else curve, None if twin is None else twin.curve)
+    if chosen is not None:
         top_MPa = min(plan.limit_MPa, bench.ceiling_MPa)
         known = None if curve is None else (curve.pressure_MPa, curve.angle_deg)
-        controller = controller_of(**asdict(control), ceiling_MPa=top_MPa, curve=known)
+        warnings += [*chosen.warnings, *check_reach(plan, top_MPa, curve, chosen.control.feed_forward)]
+        controller = controller_of(**asdict(chosen.control), ceiling_MPa=top_MPa, curve=known)
+    elif settings.control is not None:
+        warnings.append("--control is not used: no step is closed-loop")
     stem = _stem(source, settings)
     check_room(stem, plan)
     return Prepared(
@@ -132,7 +136,7 @@ def prepare(protocol: str, settings: RunSettings) -> Prepared:
         limits=limits,
         curve=curve,
         twin=twin,
-        control=control,
+        control=control_told(chosen, curve),
         controller=controller,
         stem=stem,
         warnings=(*bench_doubts(spec, bench), *_blind(bench), *warnings),
@@ -145,13 +149,8 @@ def check_room(stem: Path, plan: Plan) -> None:
     Raises UsageError and, for a full disk, InputError.
     """
     folder = stem.parent
-    if folder.exists() and not folder.is_dir():
-        raise UsageError("is no folder", file=folder, hint="choose another --out")
+    check_new_folder(folder)
     there = folder if folder.is_dir() else folder.absolute().parent
-    if not there.is_dir():
-        raise UsageError("no such folder", file=folder.parent, hint="make it, or choose another --out")
-    if not os.access(there, os.W_OK | os.X_OK):
-        raise UsageError("the output folder is read-only", file=there, hint="choose another --out")
     for suffix in SUFFIXES:
         if (path := stem.with_name(stem.name + suffix)).exists():
             hint = "choose another --name or --out"
@@ -191,29 +190,6 @@ def _check_rate(plan: Plan, spec: Spec) -> None:
         raise InputError(
             f"the plan's rate is {plan.rate_Hz:g} Hz, and {spec} takes {low:g} to {high:g} Hz", hint="give --rate-Hz"
         )
-
-
-def _control(plan: Plan, bench: Bench, settings: RunSettings) -> tuple[Control | None, list[str]]:
-    """Gains for the closed-loop steps, from --control or the protocol, and what is doubtful about them."""
-    if not plan.closed_loop:
-        unused = ["--control is not used: no step is closed-loop"] if settings.control is not None else []
-        return None, unused
-    if bench.flex is None:
-        raise InputError(
-            "the protocol controls the angle, and the flex sensor of this bench is not calibrated",
-            hint="calibrate it with `benchlab control flex`",
-        )
-    if settings.control is None:
-        if plan.control is None:
-            raise InputError("the protocol has no gains for its closed-loop steps", hint="give --control FILE")
-        return plan.control, []
-    from benchlab.io.control_file import read_control
-
-    told = read_control(settings.control)
-    control = Control(told.kp_MPa_per_deg, told.ki_MPa_per_deg_s, told.feed_forward, told.lead_s)
-    if math.isclose(told.rate_Hz, plan.rate_Hz):
-        return control, []
-    return control, [f"the gains are for {told.rate_Hz:g} Hz, and the plan runs at {plan.rate_Hz:g} Hz"]
 
 
 def _blind(bench: Bench) -> list[str]:

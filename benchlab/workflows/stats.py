@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from benchlab.errors import InputError, UsageError
-from benchlab.io.files import cannot_write, check_new_file, reason_of, sha256
+from benchlab.io.files import cannot_write, check_new_file, check_new_folder, reason_of, sha256
 from benchlab.io.group_table import read_group_table
 from benchlab.io.summary_table import read_summary_table
 from benchlab.report.comparison_tables import comparison_tables
@@ -125,10 +125,7 @@ _ALL = frozenset(
 
 
 def _check_outputs(out: Path, source: Path, overwrite: bool) -> None:
-    if not out.absolute().parent.is_dir():
-        raise UsageError("no such folder", file=out.parent, hint="make it, or choose another --out")
-    if out.exists() and not out.is_dir():
-        raise UsageError("is not a folder", file=out, hint="choose another --out")
+    check_new_folder(out)
     for path in (out / name for name in sorted(_ALL) if (out / name).exists()):
         if path.resolve() == source.resolve():
             raise UsageError("is read here and would be replaced", file=path, hint="choose another --out")

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from benchlab.errors import BenchlabError, UsageError
-from benchlab.io.files import reason_of, sha256
+from benchlab.errors import BenchlabError
+from benchlab.io.files import make_folder, sha256
 from benchlab.io.study_file import Study, StudyDesign, StudyRecording, StudySample
 from benchlab.io.study_values import (
     CycleValue,
@@ -54,7 +54,8 @@ def collect(
     progress: called with recordings done and in all. Raises UsageError for a folder that cannot be written to. After Ctrl-C, what is
     finished is current the next time. Force files are read each time.
     """
-    _check_folder(out)
+    make_folder(out)
+    make_folder(out / RECORDINGS)
     items = list(study_items(study, out / RECORDINGS))
     target = Target.of(study.pressure_MPa, study.hold_tolerance_MPa)
     work = functools.partial(read_item, target=target, overwrite=overwrite)
@@ -67,19 +68,6 @@ def collect(
         if progress:
             progress(len(read), len(items))
     return _assembled(study, target, read)
-
-
-def _check_folder(out: Path) -> None:
-    try:
-        out.mkdir(exist_ok=True)
-        (out / RECORDINGS).mkdir(exist_ok=True)
-    except FileNotFoundError:
-        raise UsageError("no such folder", file=out.parent, hint="make it, or choose another --out") from None
-    except OSError as error:
-        what = f"cannot be used as output folder: {reason_of(error)}"
-        raise UsageError(what, file=out, hint="choose another --out") from error
-    if not os.access(out / RECORDINGS, os.W_OK | os.X_OK):
-        raise UsageError("the output folder is read-only", file=out / RECORDINGS, hint="choose another --out")
 
 
 def _done(recording: StudyRecording, result: dict[str, Any] | None) -> _Read:

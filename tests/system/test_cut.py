@@ -44,7 +44,7 @@ def test_a_file_becomes_a_drawing_of_one_material(benchlab, tmp_path) -> None:
     ("arguments", "words"),
     [
         (["tw3_slw10", "--out", "a.pdf"], ["a.pdf", ".dxf or .svg"]),
-        (["tw3_slw10", "--out", "none/a.dxf"], ["no such folder"]),
+        (["tw3_slw10", "--out", "none/of/a.dxf"], ["no such folder"]),
         (["tw3_slw10", "--out", "folder.dxf", "--overwrite"], ["is a folder"]),
         (["tw3_slw10", "--kerf-mm", "2"], ["kerf_mm is 2", "rib width fw is 2 mm"]),
         (["tw3_slw10", "--kerf-mm", "nan"], ["not a finite number"]),

@@ -63,7 +63,7 @@ def test_an_existing_deck_is_kept(benchlab, tmp_path: Path) -> None:
         (["--elements", "sheets"], "CalculiX alone"),
         (["--material", "nothing"], "no material is called"),
         (["--bulk-over-shear", "0"], "--bulk-over-shear is 0"),
-        (["--out", "absent/a.inp"], "no such folder"),
+        (["--out", "absent/of/a.inp"], "no such folder"),
     ],
 )
 def test_what_makes_no_deck_is_refused(options: list[str], says: str, benchlab, tmp_path: Path, monkeypatch) -> None:

@@ -76,7 +76,7 @@ def test_an_unstable_law_is_written_only_when_asked_for_and_says_so(tmp_path: Pa
         (["none.csv"], 2, "no such file"),
         (["a.csv", "a.csv"], 2, "same content as a.csv"),
         (["a.csv", "--out", "x.txt"], 2, "not a .yaml file"),
-        (["a.csv", "--out", "none/x.yaml"], 2, "no such folder"),
+        (["a.csv", "--out", "none/of/x.yaml"], 2, "no such folder"),
         (["a.csv", "--out", "taken.yaml"], 2, "exists; choose another --out, or replace it with --overwrite"),
         (["a.csv", "--out", "free.yaml"], 2, "free.png: exists"),
         (["a.csv", "--max-stretch", "0.9"], 2, "--max-stretch is 0.9"),

@@ -56,6 +56,15 @@ def test_show_writes_the_plan_as_table_and_picture_and_replaces_nothing(benchlab
     assert benchlab("protocol", "show", "sine_tracking", "--out", picture, "--overwrite").code == 0
 
 
+def test_the_last_folder_of_out_is_made_as_by_every_command(benchlab: Callable, tmp_path: Path) -> None:
+    for index, words in enumerate((("protocol", "show", "linear_ramp", "--out"), ("cut", "tw3_slw10", "--out"))):
+        out = tmp_path / f"results{index}" / f"a{('.png', '.svg')[index]}"
+        done = benchlab(*words, out)
+        assert done.code == 0 and out.exists(), done.err
+        deep = benchlab(*words, tmp_path / "none" / "of" / out.name)
+        assert deep.code == 2 and "none: no such folder" in deep.err
+
+
 def test_json_says_all_of_the_plan(benchlab: Callable) -> None:
     found = benchlab("protocol", "show", "blocked_force_steps", "--rate-Hz", 50, "--json").json
     assert found["samples"] == 10151 and found["rate_Hz"] == 50 and found["peak_MPa"] == 0.35

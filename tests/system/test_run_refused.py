@@ -52,7 +52,7 @@ REFUSED = [
     (["short.yaml", "--max-duration-s", "5"], 3, "8 s"),
     (["short.yaml", "--name", "a/b"], 2, "is no name for files"),
     (["short.yaml", "--out", "none/here"], 2, "no such folder"),
-    (["short.yaml", "--out", "short.yaml"], 2, "is no folder"),
+    (["short.yaml", "--out", "short.yaml"], 2, "it is a file"),
     (["short.yaml", "--name", "taken"], 2, "taken.h5: exists, and measured data is never replaced"),
     (["short.yaml", "--calibration", "none.yaml"], 2, "none.yaml: no such file"),
     (["loop.yaml"], 3, "give --control"),

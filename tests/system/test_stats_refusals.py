@@ -73,7 +73,7 @@ def test_missing_values_are_left_out_only_when_asked_for(table: Path, benchlab) 
         ((*COLUMNS, "--confidence", "95"), 2, "confidence 95 is not between 0.5 and 0.9999"),
         ((*COLUMNS, "--difference", "0"), 2, "not above 0"),
         ((*COLUMNS, "--out", "none/here"), 2, "no such folder"),
-        ((*COLUMNS, "--out", "a.csv"), 2, "is not a folder"),
+        ((*COLUMNS, "--out", "a.csv"), 2, "it is a file"),
         (("--value", "angle_deg"), 2, "Missing option '--group'"),
     ],
 )  # fmt: skip

@@ -187,7 +187,7 @@ def test_tables_that_are_not_ours_are_refused(tmp_path, text, says):
 
 def test_a_folder_that_is_not_there_is_refused(tmp_path):
     with pytest.raises(BenchlabError, match="cannot write here"):
-        write_series_csv(tmp_path / "none" / "a.csv", bend())
+        write_series_csv(tmp_path / "none" / "of" / "a.csv", bend())
 
 
 def test_the_examples_in_the_docstrings_hold():
