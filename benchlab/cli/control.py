@@ -104,7 +104,9 @@ def flex(
     "--closed-loop-s", type=Finite("S"), help="Closed-loop time as you wish it. [default: the shortest that is safe]"
 )
 @click.option(
-    "--feed-forward", is_flag=True, help="Also use the inverse response curve; the run then needs --design or --curve."
+    "--feed-forward",
+    is_flag=True,
+    help="Also use the inverse response curve: --design or --curve of the run; a twin has one of its own.",
 )
 @click.option("--overwrite", is_flag=True, help="Replace an existing file.")
 @click.option("--json", "as_json", is_flag=True, help="One JSON document on standard output.")

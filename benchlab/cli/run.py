@@ -21,8 +21,8 @@ from benchlab.errors import counted, printable
 @click.option(
     "--design",
     type=Design(),
-    help="Actuator on the bench: a design file, or a name such as tw3_slw10. Its simulated response curve is the twin's, and what "
-    "feed-forward and the guard of bending go by.",
+    help="Actuator on the bench, as feed-forward and the guard of bending believe it: a design file, or a name such as tw3_slw10, whose "
+    "curve is simulated. A twin without a curve of its own bends by it too.",
 )
 @click.option(
     "--curve", type=click.Path(path_type=Path), help="Or that curve from a file, as `benchlab simulate` writes it."
@@ -91,8 +91,9 @@ def run(protocol: str, dry_run: bool, quiet: bool, as_json: bool, **options: Any
         found = planned(prepared)
         _tell_plan(found)
     else:
+        _tell_before(prepared)
         found, bug = _drive(prepared, quiet)
-        _tell(found)
+        _tell(found, prepared.warnings)
         if bug is not None:
             raise bug
     if as_json:
@@ -125,7 +126,7 @@ def _tell_plan(found: dict[str, Any]) -> None:
         f"  asks for up to {peak or 0:.4g} MPa, in ramps of up to {slew or 0:.3g} MPa/s{', and for angles' * plan['closed_loop']}",
         f"  bench {found['bench_spec']}: {bench['name']}, up to {bench['ceiling_MPa']:.4g} MPa, {bench['ceiling_V']:.3f} V",
         f"  watched: {', '.join(found['guards'])}",
-        *([f"  gains: {found['control']}"] if found["control"] else []),
+        *([f"  control: {found['control']['words']}"] if found["control"] else []),
         *(f"  warning: {warning}" for warning in found["warnings"]),
         *(f"  would write {path}" for path in found["would_write"]),
         "dry run complete: no port was opened and nothing was written",
@@ -134,8 +135,16 @@ def _tell_plan(found: dict[str, Any]) -> None:
         click.echo(printable(line), err=True)
 
 
-def _tell(found: dict[str, Any]) -> None:
-    """How it ended, warnings and files, on standard error."""
+def _tell_before(prepared: Any) -> None:
+    """What whoever stands at the bench must know before it is opened, on standard error."""
+    if prepared.control is not None:
+        click.echo(printable(f"control: {prepared.control['words']}"), err=True)
+    for warning in prepared.warnings:
+        click.echo(f"warning: {printable(warning)}", err=True)
+
+
+def _tell(found: dict[str, Any], known: tuple[str, ...]) -> None:
+    """How it ended, warnings that are not known yet, and files, on standard error."""
     done = f"{found['ticks']} of {found['ticks_planned']} ticks in {found['time_s']:.1f} s"
     late = found["late_ms"]
     lateness = f", late by {late['p50']:.2g} ms (median) to {late['max']:.2g} ms" if late else ", in virtual time"
@@ -143,7 +152,8 @@ def _tell(found: dict[str, Any]) -> None:
     click.echo(f"{who}{printable(found['reason'])}: {printable(found['words'])}", err=True)
     click.echo(f"  {done}{lateness}; {_vented(found)}", err=True)
     for warning in found["warnings"]:
-        click.echo(f"  warning: {printable(warning)}", err=True)
+        if warning not in known:
+            click.echo(f"  warning: {printable(warning)}", err=True)
     for path in found["outputs"]:
         click.echo(f"  wrote {printable(path)}", err=True)
 

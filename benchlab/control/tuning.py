@@ -116,7 +116,7 @@ def tune(
     Raises InputError for no plant, for one with a gain, lag or dead time that no bench has, and where no gains are safe.
     """
     _check(plants)
-    held = [Lag(p.gain_deg_per_MPa, p.lag_s, p.dead_time_s + LOOP_PERIODS / rate_Hz) for p in plants]
+    held = [_in_loop(plant, rate_Hz) for plant in plants]
     one = min(held, key=lambda plant: simc(plant, plant.dead_time_s)[0])
     lead = float(np.median([p.lag_s + p.dead_time_s for p in plants])) + 0.5 / rate_Hz
     if closed_loop_s is not None:
@@ -129,6 +129,19 @@ def tune(
             )
         return found
     return _fastest(one, held, lead, max_sensitivity)
+
+
+def margins_at(kp: float, ki: float, plants: Sequence[Lag], rate_Hz: float) -> tuple[Margins, ...]:
+    """Margins of given gains at each operating point, with the dead time of a loop at rate_Hz, as `tune` has them.
+
+    >>> [found.stable for found in margins_at(0.8, 0.0, [Lag(400.0, 0.1, 0.0)], rate_Hz=100)]
+    [False]
+    """
+    return tuple(margins(kp, ki, _in_loop(plant, rate_Hz)) for plant in plants)
+
+
+def _in_loop(plant: Lag, rate_Hz: float) -> Lag:
+    return Lag(plant.gain_deg_per_MPa, plant.lag_s, plant.dead_time_s + LOOP_PERIODS / rate_Hz)
 
 
 def _fastest(one: Lag, plants: Sequence[Lag], lead_s: float, max_sensitivity: float) -> Tuning:

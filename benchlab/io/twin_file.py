@@ -94,7 +94,7 @@ def read_twin(path: Path | None) -> TwinSettings:
         return TwinSettings(shipped_curve(), design=SHIPPED_CURVE)
     if path.suffix.lower() in CURVE_SUFFIXES:
         curve, told = _curve(path)
-        return TwinSettings(curve, design=path.stem, length_mm=told.get("length_mm", LENGTH_MM))
+        return TwinSettings(curve, design=path.stem, length_mm=told.get("length_mm", LENGTH_MM), own_curve=True)
     found = read_document(path, _Twin)
     if found.curve is None:
         curve, told = shipped_curve(), {"length_mm": LENGTH_MM}
@@ -108,6 +108,7 @@ def read_twin(path: Path | None) -> TwinSettings:
             design=found.design or (SHIPPED_CURVE if found.curve is None else Path(found.curve).stem),
             length_mm=_length_mm(found.length_mm, told.get("length_mm")),
             camera=Camera(**found.camera.model_dump()),
+            own_curve=found.curve is not None,
         )
     except InputError as error:
         raise InputError(error.what, file=path, where=error.where, hint=error.hint) from None

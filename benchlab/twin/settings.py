@@ -48,7 +48,8 @@ class Camera:
 class TwinSettings:
     """Response curve, effects by name, seed of the noise, design in words, length of the actuator (mm), camera.
 
-    effects: those that are on; faults are on only where they stand here.
+    effects: those that are on; faults are on only where they stand here. own_curve: whether its file says which curve, so that what
+    somebody believes of the actuator does not take its place.
     """
 
     curve: ResponseCurve
@@ -57,6 +58,7 @@ class TwinSettings:
     design: str = ""
     length_mm: float = 180.0
     camera: Camera = Camera()
+    own_curve: bool = False
 
     def __post_init__(self) -> None:
         if not 0 <= self.seed < 2**63:

@@ -54,7 +54,7 @@ def spec_of(text: str) -> Spec:
 
 
 def twin_of(spec: Spec, seed: int | None = None, actuator: Actuator | None = None) -> TwinSettings | None:
-    """What a twin is made from; None for another bench. seed, actuator: in place of its file's.
+    """What a twin is made from; None for another bench. seed: in place of its file's. actuator: where its file has no curve of its own.
 
     Raises UsageError and InputError as `read_twin`.
     """
@@ -63,7 +63,7 @@ def twin_of(spec: Spec, seed: int | None = None, actuator: Actuator | None = Non
     from benchlab.io.twin_file import read_twin
 
     settings = read_twin(Path(spec.where) if spec.where else None)
-    if actuator is not None:
+    if actuator is not None and not settings.own_curve:
         settings = replace(settings, curve=actuator.curve, design=actuator.name)
         if actuator.length_mm is not None:
             settings = replace(settings, length_mm=actuator.length_mm)
@@ -141,7 +141,9 @@ def _replay(path: Path) -> Device:
     journal = read_journal(path)
     if not len(journal.samples):
         raise InputError("holds no sample", file=path, hint="replay a journal of a run that began")
-    return Replay(journal.samples, journal.header.get("device", {}), trigger_ticks(journal))
+    vent = next((event for event in journal.events if event["kind"] == "vent"), None)
+    watched = 0 if vent is None else len(journal.samples) - int(vent["after_samples"])
+    return Replay(journal.samples, journal.header.get("device", {}), trigger_ticks(journal), watched)
 
 
 def _recorded_bench(path: Path) -> Bench:

@@ -28,6 +28,7 @@ def written(prepared: Prepared, driven: Driven) -> dict[str, Any]:
         "title": prepared.plan.title,
         "bench": str(prepared.spec),
         **end.record(),
+        "control": prepared.control,
         "late_ms": None if prepared.fast else end.late_ms,
         "went_first": driven.went_first,
         "exit_code": BenchError.exit_code

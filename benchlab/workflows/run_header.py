@@ -28,7 +28,7 @@ def header_of(prepared: Prepared, about: dict[str, Any]) -> dict[str, Any]:
         "bench_kind": prepared.spec.kind,
         "bench": asdict(prepared.bench),
         "device": about,
-        "control": None if prepared.control is None else asdict(prepared.control),
+        "control": prepared.control,
         "curve": None if prepared.curve is None else asdict(prepared.curve),
         "guards": asdict(prepared.limits),
         "clock": "virtual" if prepared.fast else "real",

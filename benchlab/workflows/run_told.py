@@ -37,7 +37,7 @@ def planned(prepared: Prepared) -> dict[str, Any]:
         "bench": {**asdict(bench), "ceiling_MPa": bench.ceiling_MPa, "ceiling_V": bench.volts(bench.ceiling_code)},
         "guards": [guard.name for guard in guards],
         "limits": asdict(prepared.limits),
-        "control": None if prepared.control is None else asdict(prepared.control),
+        "control": prepared.control,
         "warnings": list(prepared.warnings),
         "would_write": [str(prepared.path(suffix)) for suffix in prepared.suffixes],
     }

@@ -30,7 +30,7 @@ def test_a_dry_run_says_what_would_run_and_opens_nothing(
     assert any("no calibration" in warning for warning in found["warnings"])
     assert any("a burst or a tube that is off is not seen" in warning for warning in found["warnings"])
     assert "watched: device, faults" in done.err and "nothing was written" in done.err
-    assert len(benchlab(*words, "--bench", "twin").json["guards"]) == 7
+    assert len(benchlab(*words, "--bench", "twin").json["guards"]) == 9
 
 
 REFUSED = [

@@ -35,7 +35,7 @@ class SwingGuard:
     A turn of the reference may cost two turns of the pressure; those beyond, in the last ten seconds, are counted.
     """
 
-    name = "loop does not oscillate"
+    name = "oscillation"
     OVER_S = 10.0
     SHARE, LEAST_MPA, LEAST_DEG = 0.25, 0.03, 0.5
 
