@@ -221,6 +221,9 @@ class Typist:
         return os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1]), self.seen
 
 
+COUNTS = 1.1 * 1024 / 4.9
+
+
 def typist(nano: SmallNano, folder: Path, *more: str) -> Typist:
     arguments = ("--bench", f"serial:{nano.port}", "--gauge", "Keller LEO 2", "--points", "4", "--max-MPa", "0.16",
                  "--settle-s", "0.1")  # fmt: skip
@@ -228,7 +231,7 @@ def typist(nano: SmallNano, folder: Path, *more: str) -> Typist:
 
 
 def test_a_calibration_is_typed(tmp_path: Path) -> None:
-    with SmallNano() as nano:
+    with SmallNano(counts=COUNTS) as nano:
         lab = typist(nano, tmp_path)
         lab.wait_for("multimeter?")
         lab.type("49\n")
@@ -261,6 +264,15 @@ def test_a_calibration_is_typed(tmp_path: Path) -> None:
     assert file.bench.monitor is not None and len(file.readings) == 7
     assert file.bench.monitor.gain == pytest.approx(MONITOR.gain, rel=0.003)
     assert file.bench.gauge == "Keller LEO 2" and file.bench.supply_V == 4.9
+    assert file.bench.reference_counts == pytest.approx(COUNTS, abs=0.01)
+
+
+def test_a_supply_that_the_nano_cannot_have_is_refused_before_anything_is_armed(tmp_path: Path) -> None:
+    """Typed as 5.5 V, it would put each pressure of a bench at 4.9 V 12 % off; the reference would be 1.23 V."""
+    with SmallNano(counts=COUNTS) as nano:
+        code, shown = typist(nano, tmp_path, "--supply-V", "5.5", "--unit", "kPa").end()
+        assert code == 3 and "given as 5.5 V, and the Nano's own measurement says 4.45 to 5.35 V" in shown, shown
+        assert nano.highest_code == 0
 
 
 @pytest.mark.parametrize(
@@ -301,11 +313,13 @@ def test_a_firmware_with_a_lower_ceiling_is_calibrated_below_it(tmp_path: Path) 
     with SmallNano(ceiling_code=1300) as nano:
         lab = Typist(tmp_path, "--bench", f"serial:{nano.port}", "--gauge", "a", "--points", "4", "--settle-s", "0.1",
                      "--supply-V", "4.9", "--unit", "kPa")  # fmt: skip
+        lab.wait_for("firmware 1.0.0 does not measure its supply")
         for number in range(1, 8):
             lab.wait_for(f"{number}/7")
             lab.type(f"{1000 * nano.pressure_MPa:.3f}\n")
         code, shown = lab.end()
     assert code == 0 and "extrapolated" in shown
+    assert read_bench_file(tmp_path / "bench.yaml").bench.reference_counts is None
     assert 1290 < nano.highest_code <= 1300
 
 

@@ -84,6 +84,32 @@ def test_a_supply_that_has_risen_is_refused_before_anything_is_armed(
     assert nano.highest_code == 0 and not list(tmp_path.glob("r.*"))
 
 
+def test_without_a_monitor_the_nanos_own_measurement_shows_a_supply_that_has_risen(
+    benchlab, nano: SmallNano, files, tmp_path: Path
+) -> None:
+    """Of 1.1 V it counts 229.9 on 4.9 V, and counted 237 on the 4.75 V that it was calibrated with: 3 % more pressure."""
+    text = "".join(
+        CALIBRATION.format(date="2026-05-31", supply_V="4.75\nreference_counts: 237.1").partition("monitor")[:1]
+    )
+    files[0].write_text(text)
+    nano.ceiling_code, nano.counts = read_bench(files[0]).ceiling_code, 1.1 * 1024 / 4.9
+    done = benchlab(*words(nano, *files))
+    assert done.code == 5, done.err
+    assert "the supply is 4.90 V, calibrated at 4.75 V" in done.err and "the USB port" in done.err
+    assert nano.highest_code == 0 and not list(tmp_path.glob("r.*"))
+    files[0].write_text(text.replace("4.75", "4.9").replace("237.1", "229.9"))
+    done = benchlab(*words(nano, *files))
+    assert done.code == 0 and "supply" not in done.err and nano.code == 0
+
+
+def test_a_bench_is_vented_whatever_its_supply(benchlab, nano: SmallNano, files) -> None:
+    """Only runs are refused."""
+    files[0].write_text(CALIBRATION.format(date="2026-05-31", supply_V="4.75\nreference_counts: 237.1"))
+    nano.counts, nano.code = 1.1 * 1024 / 4.9, 500
+    done = benchlab("bench", "vent", "--bench", f"serial:{nano.port}", "--calibration", files[0])
+    assert done.code == 0 and nano.code == 0
+
+
 def test_a_bench_that_is_not_empty_is_not_armed(benchlab, nano: SmallNano, files, monkeypatch) -> None:
     from benchlab.workflows import bench_zero
 

@@ -17,10 +17,10 @@ from benchlab.devices import conversation
 from benchlab.devices.emulated import LockstepTransport
 from benchlab.devices.emulator import Emulator
 from benchlab.devices.interface import LostError, Status
-from benchlab.devices.messages import Answer
+from benchlab.devices.messages import HELLO, Answer
 from benchlab.devices.serial_bench import SerialBench
 from benchlab.devices.tally import Tally
-from benchlab.devices.wire import Wire
+from benchlab.devices.wire import ANSWER, Decoder, Frame, Wire, encode
 from benchlab.errors import BenchError
 from tests.unit.devices.faulty_line import FaultyLine
 from tests.unit.devices.nano import BENCH, needs_emulator
@@ -108,6 +108,74 @@ def test_another_protocol_is_refused(line: FaultyLine, monkeypatch: pytest.Monke
     monkeypatch.setattr(conversation, "PROTOCOL", 9)
     with pytest.raises(BenchError, match=r"firmware 1.1.0 speaks protocol 1, this benchlab 9; .*bench firmware"):
         SerialBench(line, BENCH)
+
+
+def test_it_waits_until_the_firmware_has_measured_its_supply(line: FaultyLine) -> None:
+    """Said hello to as soon as it listens, it has not yet; it is asked again."""
+    about = SerialBench(line, replace(BENCH, reference_counts=225.0)).about()
+    assert about["reference_counts"] == 225 and about["supply_V"] == 5.0
+    assert about["supply_between_V"] == pytest.approx([1024 / 225, 1.2 * 1024 / 225])
+
+
+def test_after_a_run_the_supply_is_measured_anew(line: FaultyLine, emulator: Emulator) -> None:
+    device = SerialBench(line, BENCH)
+    device.arm()
+    emulator.tell("supply 5200")
+    ramp(device, line, 20)
+    device.vent()
+    assert SerialBench(line, BENCH).about()["reference_counts"] == 216
+
+
+class OldFirmware:
+    """Around a line: answers hello as version 1.0.0 did, whose hello ended before the supply; or as another."""
+
+    def __init__(self, line: FaultyLine, head: bytes = bytes([1, 1, 0, 0]), size: int = 20) -> None:
+        self.line, self.name, self.head, self.size = line, line.name, head, size
+        self.about, self.clock_s, self.advance = line.about, line.clock_s, line.advance
+        self.write, self.close, self.decoder = line.write, line.close, Decoder()
+
+    def read(self, timeout_s: float) -> bytes:
+        frames = self.decoder.feed(self.line.read(timeout_s))
+        return b"".join(map(encode, (self.old(f) if f.command == HELLO | ANSWER else f for f in frames)))
+
+    def old(self, frame: Frame) -> Frame:
+        return replace(frame, payload=(self.head + frame.payload[4:])[: self.size])
+
+
+def test_older_firmware_is_driven_and_told(line: FaultyLine) -> None:
+    device = SerialBench(OldFirmware(line), replace(BENCH, reference_counts=225.0))
+    about = device.about()
+    assert (about["firmware"], about["reference_counts"], about["supply_V"]) == ("1.0.0", None, None)
+    (note,) = about["notes"]
+    assert "firmware 1.0.0 does not measure its supply" in note and "`benchlab bench firmware`" in note
+    device.arm()
+    assert ramp(device, line, 20)[-1].code == BENCH.code(0.1)
+
+
+def test_what_an_older_version_says_after_its_hello_is_no_supply(line: FaultyLine) -> None:
+    """The version says what is in a hello, not its length."""
+    assert SerialBench(OldFirmware(line, size=23), BENCH).about()["reference_counts"] is None
+
+
+def test_another_protocol_with_a_shorter_hello_is_named(line: FaultyLine) -> None:
+    with pytest.raises(BenchError, match=r"firmware 2\.0\.0 speaks protocol 2, this benchlab 1"):
+        SerialBench(OldFirmware(line, head=bytes([2, 2, 0, 0])), BENCH)
+
+
+def test_a_firmware_whose_adc_does_not_convert_is_told(line: FaultyLine) -> None:
+    """Its sum stays 0: half a second is waited for it."""
+    mute = OldFirmware(line, head=bytes([1, 1, 1, 0]), size=23)
+    mute.old = lambda frame: replace(frame, payload=frame.payload[:20] + bytes([0, 0, 64]))
+    began = line.clock_s()
+    (note,) = SerialBench(mute, BENCH).about()["notes"]
+    assert "could not measure its supply" in note and 0.5 < line.clock_s() - began < 0.8
+
+
+def test_a_calibration_without_counts_is_told_where_no_monitor_shows_the_supply(line: FaultyLine) -> None:
+    assert SerialBench(line, BENCH).about()["notes"] == []
+    (note,) = SerialBench(line, replace(BENCH, monitor=None)).about()["notes"]
+    assert "has no reference_counts" in note and "calibrate again" in note
+    assert SerialBench(line, replace(BENCH, monitor=None, calibrated=False)).about()["supply_V"] is None
 
 
 def test_a_nano_that_still_boots_is_waited_for(line: FaultyLine) -> None:

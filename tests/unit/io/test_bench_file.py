@@ -27,6 +27,7 @@ BENCH = Bench(
     Line(41.5, -60.2, 0.8),
     limit_MPa=0.30,
     supply_V=4.93,
+    reference_counts=228.4,
     gauge="WIKA CPG1500, 0 to 10 bar",
     date="2026-05-31",
     calibrated=True,
@@ -58,7 +59,7 @@ def test_without_monitor_flex_readings_and_sd(tmp_path: Path) -> None:
     path.write_text(TEXT)
     bench = read_bench(path)
     assert bench.calibrated and bench.monitor is None and bench.flex is None and math.isnan(bench.regulator.sd)
-    assert bench.limit_MPa == 0.35 and bench.ceiling_code == 2986
+    assert bench.limit_MPa == 0.35 and bench.ceiling_code == 2986 and bench.reference_counts is None
     write_bench(path, bench)
     assert read_bench(path).regulator.gain == 0.096 and math.isnan(read_bench(path).regulator.sd)
 
@@ -77,6 +78,8 @@ def test_no_file_is_a_bench_that_nobody_calibrated() -> None:
         ("0.096", ".nan", "line 5", "finite number"),
         ("supply_V: 5.0", "supply_V: 3.3", "left bench", "supply_V"),
         ("supply_V: 5.0", "supply_V: five", "line 4", "supply_V"),
+        ("supply_V: 5.0", "supply_V: 5.0\nreference_counts: 120.0", "left bench", "reference_counts"),
+        ("supply_V: 5.0", "supply_V: 4.5\nreference_counts: 225.0", "left bench", "reference_counts"),
         ("supply_V: 5.0\n", "", "", "supply_V"),
         ("gauge: WIKA CPG1500\n", "", "", "gauge"),
         ("'2026-05-31'", "'31.05.2026'", "", "2026-05-31"),
