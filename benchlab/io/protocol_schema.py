@@ -13,7 +13,8 @@ from pydantic import AfterValidator, Field, model_validator
 
 from benchlab.io.protocol_curvature import CurvatureDocument
 from benchlab.io.protocol_values import Count, Duration, Frequency, Pressure, Rate, one_of
-from benchlab.io.yaml_file import Document, Place
+from benchlab.io.yaml_commas import Place
+from benchlab.io.yaml_file import Document
 from benchlab.protocol.groups import Repeat, Segment, Signal, levels_of, train
 from benchlab.protocol.plan import Control
 from benchlab.protocol.segments import Hold, Ramp, Sine, Triangle, Vent

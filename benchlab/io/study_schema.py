@@ -25,7 +25,8 @@ from benchlab.io.study_parts import (
     kind_of,
 )
 from benchlab.io.study_values import ALL_DESIGNS
-from benchlab.io.yaml_file import Document, Place
+from benchlab.io.yaml_commas import Place
+from benchlab.io.yaml_file import Document
 
 Wrong = tuple[Place, object, str]
 """Where in the file, what stands there, and what is wrong with it."""

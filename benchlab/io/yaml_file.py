@@ -7,10 +7,8 @@ files that are large or not regular. All that a model finds wrong is said at onc
 from __future__ import annotations
 
 import codecs
-import difflib
 import io
 import json
-import math
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
@@ -24,14 +22,14 @@ from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
 from benchlab.errors import InputError
 from benchlab.io.files import cannot_write, check_regular_file, written_whole
-from benchlab.io.yaml_units import in_unit_of_key, same_name
+from benchlab.io.yaml_commas import Comma, Place, comma_told, find_commas, with_points
+from benchlab.io.yaml_words import Told, name_of, told_of
 
 MAX_BYTES = 1_000_000
 MAX_DEPTH = 32
 MAX_ERRORS = 12
 """Limits: bytes in a file, nesting of its lists and mappings, errors that are spelt out."""
 
-Place = tuple[str | int, ...]
 Model = TypeVar("Model", bound=BaseModel)
 
 
@@ -51,16 +49,16 @@ def read_document(path: Path, model: type[Model]) -> Model:
 
 def read_document_with_lines(path: Path, model: type[Model]) -> tuple[Model, dict[Place, int]]:
     """The same, and the line of each key and item by its place, as ("segments", 2, "ramp")."""
-    text = read_text(path)
     lines: dict[Place, int] = {}
-    data = _parsed(path, text, lines)
+    data, told = _parsed(path, read_text(path), lines)
+    found = None
     try:
-        return model.model_validate_json(json.dumps(data), strict=True), lines
+        found = model.model_validate_json(json.dumps(data), strict=True)
     except ValidationError as error:
-        known = _known_keys(model)
-        found = _told_once([dict(e) for e in error.errors(include_url=False)])
-        told = sorted((_one(e, lines, known) for e in found), key=lambda one: int(one[0].removeprefix("line ")))
-        raise refused(path, told) from None
+        told += told_of(error, lines, model)
+    if found is None or told:
+        raise refused(path, sorted(told, key=lambda one: int(one[0].removeprefix("line "))))
+    return found, lines
 
 
 def write_document(path: Path, document: dict[str, Any], header_comment: str = "") -> None:
@@ -107,13 +105,16 @@ def _loaded(text: str) -> Any:
         return YAML(typ="safe", pure=True).load(text)
 
 
-def _parsed(path: Path, text: str, lines: dict[Place, int]) -> Any:
-    """The data of a document; `lines` is filled with the line of every key and item."""
+def _parsed(path: Path, text: str, lines: dict[Place, int]) -> tuple[Any, list[Told]]:
+    """The data of a document, and what is wrong with commas in it; `lines` is filled with the line of every key and item."""
     try:
         _check_events(path, text)
         node = YAML(typ="safe", pure=True).compose(text)
         if node is None:
             raise InputError("holds no data", file=path, hint="write `key: value` lines")
+        if commas := list(find_commas(node, text)):
+            text = with_points(text, commas)
+            node = YAML(typ="safe", pure=True).compose(text)
         _note_lines(path, node, (), lines)
         data = _loaded(text)
     except MarkedYAMLError as error:
@@ -128,7 +129,12 @@ def _parsed(path: Path, text: str, lines: dict[Place, int]) -> Any:
     except (YAMLError, ValueError, OverflowError, LookupError) as error:  # an empty `!!int` has no first letter
         raise InputError(f"not YAML: {str(error).splitlines()[0]}", file=path) from None
     _check_plain(path, data, (), lines)
-    return data
+    return data, [_of_comma(comma) for comma in commas]
+
+
+def _of_comma(comma: Comma) -> Told:
+    what, remedy = comma_told(comma.written) or (f"{comma.written} has a comma", "write a point")
+    return f"line {comma.line}", f"{name_of(comma.place)}: {what}", remedy
 
 
 def _check_events(path: Path, text: str) -> None:
@@ -155,7 +161,7 @@ def _note_lines(path: Path, node: Node, place: Place, lines: dict[Place, int]) -
                 shown = key.value if isinstance(key, ScalarNode) else "a list or mapping"
                 raise InputError(f"key {shown!r} is not text", file=path, where=f"line {line}", hint="quote it")
             if (first := lines.get((*place, key.value))) is not None:
-                what = f"duplicate key {_name((*place, key.value))}, already on line {first}"
+                what = f"duplicate key {name_of((*place, key.value))}, already on line {first}"
                 raise InputError(what, file=path, where=f"line {line}", hint="remove or rename one of them")
             lines[(*place, key.value)] = line
             _note_lines(path, value, (*place, key.value), lines)
@@ -173,17 +179,11 @@ def _check_plain(path: Path, value: Any, place: Place, lines: dict[Place, int]) 
         for index, item in enumerate(value):
             _check_plain(path, item, (*place, index), lines)
     elif value is not None and not isinstance(value, (str, bool, int, float)):
-        what = f"{_name(place)} reads as a {type(value).__name__}, {value}"
+        what = f"{name_of(place)} reads as a {type(value).__name__}, {value}"
         raise InputError(what, file=path, where=where, hint="quote it if text is meant")
 
 
-def _name(place: Place) -> str:
-    """`film.coefficients_MPa.C10`, `steps[2].to_MPa`."""
-    text = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in place)
-    return text.removeprefix(".") or "the document"
-
-
-def refused(path: Path, found: Sequence[tuple[str, str, str]]) -> InputError:
+def refused(path: Path, found: Sequence[Told]) -> InputError:
     """One error of all that is wrong: each its line (empty: of the whole file), what, and the remedy."""
     if len(found) == 1:
         line, what, remedy = found[0]
@@ -192,57 +192,3 @@ def refused(path: Path, found: Sequence[tuple[str, str, str]]) -> InputError:
     if len(found) > MAX_ERRORS:
         shown.append(f"and {len(found) - MAX_ERRORS} more")
     return InputError(f"{len(found)} things are wrong: " + "; ".join(shown), file=path, hint=None)
-
-
-def _told_once(errors: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Errors without the missing keys that stand there misspelt or in another unit: those are told as unknown keys."""
-    unknown = [error["loc"] for error in errors if error["type"] == "extra_forbidden"]
-    return [
-        error
-        for error in errors
-        if error["type"] != "missing"
-        or not any(
-            place[:-1] == error["loc"][:-1] and _like(str(place[-1]), {str(error["loc"][-1])}) for place in unknown
-        )
-    ]
-
-
-def _one(error: dict[str, Any], lines: dict[Place, int], known: set[str]) -> tuple[str, str, str]:
-    """Line, what is wrong, and the remedy."""
-    place: Place = ()
-    for part in error["loc"]:  # parts that stand for a choice of models, not for a key, are left out
-        if (*place, part) in lines:
-            place = (*place, part)
-    line = f"line {lines.get(place, 1)}"
-    kind, value, message = error["type"], error["input"], str(error["msg"])
-    if kind == "missing":
-        inside = f" in {_name(place)}" if place else ""
-        return line, f"{error['loc'][-1]} is missing{inside}", f"add `{error['loc'][-1]}:`"
-    if kind == "extra_forbidden":
-        return line, f"unknown key {_name(place)}", _remedy(str(place[-1]), value, known)
-    if place and isinstance(value, str) and (wanted := in_unit_of_key(str(place[-1]), value, known)):
-        return line, f"{_name(place)} is {json.dumps(value, ensure_ascii=False)}", f"write {wanted}"
-    if isinstance(value, float) and not math.isfinite(value):
-        return line, f"{_name(place)} is {value}", "give a finite number"
-    shown = json.dumps(value, ensure_ascii=False, default=str)
-    shown = shown if len(shown) <= 60 else shown[:57] + "..."
-    wish = message.removeprefix("Input should be ").removeprefix("List should have ").removeprefix("Value error, ")
-    return line, f"{_name(place)} is {shown}", f"give {wish}" if wish != message and "Value" not in message else wish
-
-
-def _remedy(key: str, value: object, known: set[str]) -> str:
-    """What to do about a key that is not known."""
-    if wanted := in_unit_of_key(key, value, known):
-        return f"write {wanted}"
-    close = _like(key, known)
-    return f"did you mean {' or '.join(close)}?" if close else "remove it"
-
-
-def _like(key: str, known: set[str]) -> list[str]:
-    return same_name(key, known) or difflib.get_close_matches(key, sorted(known), n=1)
-
-
-def _known_keys(model: type[BaseModel]) -> set[str]:
-    """Names of all fields of a model and of the models in it."""
-    schema = model.model_json_schema()
-    return {name for part in (schema, *schema.get("$defs", {}).values()) for name in part.get("properties", {})}

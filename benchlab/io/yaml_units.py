@@ -8,7 +8,8 @@ from collections.abc import Iterable
 
 from benchlab.units import UNITS, known_unit
 
-_NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
+_NUMBER = re.compile(r"\s*([-+]?(?:\d+[.,]?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
+_THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2},\d{3}")
 _MORE = {
     "angle": {"deg": 1.0, "°": 1.0, "degree": 1.0, "degrees": 1.0, "rad": 180 / math.pi, "mrad": 0.18 / math.pi},
     "frequency": {"Hz": 1.0, "kHz": 1e3, "mHz": 1e-3, "rpm": 1 / 60},
@@ -23,8 +24,10 @@ def in_unit_of_key(key: str, value: object, known: Iterable[str]) -> str | None:
     is not what is wrong.
 
     >>> keys = ("to_MPa", "duration_s", "rate_MPa_per_s")
-    >>> in_unit_of_key("to", "10 psi", keys), in_unit_of_key("to_kPa", 35, keys), in_unit_of_key("duration_s", "2 min", keys)
-    ('to_MPa: 0.0689', 'to_MPa: 0.035', 'duration_s: 120')
+    >>> in_unit_of_key("to", "10 psi", keys), in_unit_of_key("to_MPa", "0,5 bar", keys)
+    ('to_MPa: 0.0689', 'to_MPa: 0.05')
+    >>> in_unit_of_key("to_kPa", 35, keys), in_unit_of_key("duration_s", "2 min", keys)
+    ('to_MPa: 0.035', 'duration_s: 120')
     """
     parsed = _number(value)
     if parsed is None:
@@ -56,8 +59,8 @@ def _number(value: object) -> tuple[float, str] | None:
         return None
     if isinstance(value, (int, float)):
         return float(value), ""
-    if isinstance(value, str) and (found := _NUMBER.fullmatch(value)):
-        return float(found[1]), found[2]
+    if isinstance(value, str) and (found := _NUMBER.fullmatch(value)) and not _THOUSANDS.fullmatch(found[1]):
+        return float(found[1].replace(",", ".")), found[2]
     return None
 
 

@@ -69,7 +69,7 @@ GOOD = "name: a\norigin: b\nfilm:\n  law: yeoh\n  coefficients_MPa: {C10: 1}\n"
         (GOOD.replace("C10: 1", "C10: -1"), "initial shear modulus"),
         (GOOD.replace("C10: 1", "C10: .nan"), "line 5: film.coefficients_MPa.C10 is nan"),
         (GOOD + "  thickness: 1\n", r"line 6: unknown key film.thickness.*did you mean thickness_mm\?"),
-        (GOOD + "strip: {thickness_mm: 0}\n", "line 6: strip.thickness_mm is 0.*greater than 0"),
+        (GOOD + "strip: {thickness_mm: 0}\n", "line 6: strip.thickness_mm is 0.*more than 0"),
         (GOOD + "fabric: {poisson_ratio: 0.5}\n", "line 6: fabric.poisson_ratio is 0.5"),
         (GOOD + "moulded: yes\n", 'line 6: moulded is "yes"'),
         ("name: a\norigin: b\n", "film is missing"),

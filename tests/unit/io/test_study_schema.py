@@ -32,12 +32,12 @@ LAST = "s1: b1.mp4"
         # numbers as typed
         ("0.35\n", ".nan\n", ["line 2", "pressure_MPa is nan", "finite"]),
         ("0.35\n", ".inf\n", ["line 2", "finite"]),
-        ("0.35\n", "900\n", ["line 2", "pressure_MPa is 900", "less than or equal to 10"]),
-        ("0.35\n", "-1\n", ["line 2", "pressure_MPa is -1", "greater than 0"]),
+        ("0.35\n", "900\n", ["line 2", "pressure_MPa is 900", "10 or less"]),
+        ("0.35\n", "-1\n", ["line 2", "pressure_MPa is -1", "more than 0"]),
         ("0.35\n", "no\n", ["line 2", 'pressure_MPa is "no"', "number"]),
         ("0.35\n", "1:30\n", ["line 2", 'pressure_MPa is "1:30"', "number"]),
         ("0.35\n", "'0.35'\n", ["line 2", 'pressure_MPa is "0.35"', "number"]),
-        ("title: A study", "title: 010", ["line 1", "title is 10", "string"]),
+        ("title: A study", "title: 010", ["line 1", "title is 10", "text"]),
         # keys
         ("title: A study\n", "", ["title is missing", "add `title:`"]),
         (LAST, LAST + "\n    sample: {s1: c.mp4}", ["line 14", "unknown key designs.tw3_slw10.sample", "did you mean samples"]),
@@ -68,7 +68,7 @@ LAST = "s1: b1.mp4"
         # samples and recordings
         (LAST, "s1:", ["line 13", "samples.s1 is null", "give recordings"]),
         (LAST, "s1: 5", ["line 13", "samples.s1 is 5", "give recordings"]),
-        (LAST, "s1: ''", ["line 13", "at least 1 character"]),
+        (LAST, "s1: ''", ["line 13", "at least 1 letter"]),
         (LAST, "s1: {recordings: b1.mp4, left_out: ' '}", ["line 13", "left_out", "say why"]),
         (LAST, "s1: {recordings: b1.mp4, left_out: true}", ["line 13", "left_out is true"]),
         ("b1.mp4", "a1.mp4", ["line 13", "a recording of tw3_slw5 s1 already"]),

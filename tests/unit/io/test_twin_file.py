@@ -61,7 +61,7 @@ camera: {frames_per_s: 60}
     [
         ("effects:\n  softning: on\n", r"line 2: unknown key effects.softning; did you mean softening"),
         ("effects:\n  friction: {half_width: 3}\n", "line 2: unknown key effects.friction.half_width"),
-        ("effects:\n  friction: {half_width_deg: 300}\n", "line 2: effects.friction.half_width_deg is 300; give less than"),
+        ("effects:\n  friction: {half_width_deg: 300}\n", "line 2: effects.friction.half_width_deg is 300; give 20 or less"),
         ("effects:\n  friction:\n", "line 2: effects.friction is null"),
         ("effects:\n  friction: yes\n", "line 2: effects.friction is \"yes\""),
         ("effects:\n  burst: on\n", "line 2: unknown key effects.burst"),

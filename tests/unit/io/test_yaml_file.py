@@ -44,10 +44,10 @@ def test_reads_yaml_1_2_into_the_model(tmp_path: Path) -> None:
     [
         (GOOD + "count: 1\ncount: 2\n", ["line 6", "duplicate", "count", "already on line 5"]),
         (GOOD + "coun: 1\n", ["line 5", "unknown key coun", "did you mean count?"]),
-        (GOOD + "count: true\n", ["line 5", "count is true", "integer"]),
-        (GOOD + "count: '1'\n", ["line 5", 'count is "1"', "integer"]),
+        (GOOD + "count: true\n", ["line 5", "count is true", "whole number"]),
+        (GOOD + "count: '1'\n", ["line 5", 'count is "1"', "whole number"]),
         (GOOD + "count: 1.5\n", ["line 5", "count is 1.5"]),
-        (GOOD.replace("3e-1", "-0.3"), ["line 3", "film.thickness_mm is -0.3", "greater than 0"]),
+        (GOOD.replace("3e-1", "-0.3"), ["line 3", "film.thickness_mm is -0.3", "more than 0"]),
         (GOOD.replace("3e-1", ".nan"), ["line 3", "film.thickness_mm is nan", "finite"]),
         (GOOD.replace("3e-1", ".inf"), ["line 3", "finite"]),
         (GOOD.replace("3e-1", "1e999"), ["line 3", "finite"]),
@@ -108,3 +108,57 @@ def test_writes_what_it_reads_back(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="read back"):
         write_document(tmp_path / "c.yaml", {"x": float("nan")})
     assert [p.name for p in tmp_path.iterdir()] == ["b.yaml"]
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (GOOD.replace("3e-1", "0,35"), ["line 3: film.thickness_mm: 0,35 has a decimal comma; write 0.35"]),
+        (GOOD.replace("3e-1", "1,500"), ["line 3: film.thickness_mm: 1,500 has a comma; write 1.500, or 1500"]),
+        ("name: a\nfilm: {thickness_mm: 0,35}\n", ["line 2: film.thickness_mm: 0,35 has a decimal comma; write 0.35"]),
+        (
+            "name: a\nfilm: {thickness_mm: -0,05, words: b}\nangles: [0,1, 2,50]\ncount: 1,5\nextra: {a: 0,35 m}\nthickness: 0,35 m\n",
+            [
+                "8 things are wrong",
+                "line 2: film.thickness_mm: -0,05 has a decimal comma (write -0.05)",
+                "line 2: film.thickness_mm is -0.05 (give more than 0)",
+                "line 3: angles[0]: 0,1 has a decimal comma (write 0.1)",
+                "line 3: angles[1]: 2,50 has a decimal comma (write 2.50)",
+                "line 4: count: 1,5 has a decimal comma (write 1.5)",
+                "line 5: extra.a: 0,35 m has a comma (write a point)",
+                "line 6: unknown key thickness (write thickness_mm: 350)",
+            ],
+        ),
+    ],
+)
+def test_decimal_commas_are_told_at_every_place(tmp_path: Path, text: str, told: list[str]) -> None:
+    with pytest.raises(InputError) as caught:
+        read_document(write(tmp_path, text), Shell)
+    for words in told:
+        assert words in str(caught.value).replace("a.yaml, ", "")
+
+
+def test_lists_of_whole_numbers_and_text_with_commas_are_left_alone(tmp_path: Path) -> None:
+    for written, read in (("[1,2]", (1, 2)), ("[1,2,3,4]", (1, 2, 3, 4)), ("[1, 2, 3, 4]", (1, 2, 3, 4))):
+        assert read_document(write(tmp_path, GOOD.replace("[1, 2.5]", written)), Shell).angles == read
+    text = "name: 0,35\nfilm: {thickness_mm: 1, words: 'a 0,35'}\n"
+    assert read_document(write(tmp_path, text), Shell).name == "0,35"
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("name: a\nfilm: 5\n", "line 2: film is 5; write its keys below it, as `key: value`"),
+        (GOOD + "count: 1.5\n", "line 5: count is 1.5; give a whole number"),
+        (GOOD.replace("3e-1", "thin"), 'line 3: film.thickness_mm is "thin"; give a number'),
+        (GOOD.replace("3e-1", ".nan"), "line 3: film.thickness_mm is nan; give a finite number"),
+        (GOOD.replace("3e-1", "nan"), 'line 3: film.thickness_mm is "nan"; give a finite number'),
+        (GOOD.replace("3e-1", "-inf"), 'line 3: film.thickness_mm is "-inf"; give a finite number'),
+        (GOOD.replace("[1, 2.5]", "3"), "line 4: angles is 3; write a list, as [a, b]"),
+        (GOOD.replace("name: a", "name: 5"), "line 1: name is 5; give text, in quotes if it looks like a number"),
+    ],
+)
+def test_what_a_model_finds_wrong_is_told_in_plain_words(tmp_path: Path, text: str, told: str) -> None:
+    with pytest.raises(InputError) as caught:
+        read_document(write(tmp_path, text), Shell)
+    assert str(caught.value).endswith(told)
