@@ -8,7 +8,11 @@ from typing import Any
 
 import click
 
-from benchlab.errors import InputError, printable
+from benchlab.errors import InputError, counted, printable
+
+
+MOST_GAPS = 5
+"""Holes in the record that are told one by one."""
 
 
 @click.command(short_help="Files of a run from its journal, after a crash.")
@@ -61,6 +65,9 @@ def _tell(found: dict[str, Any]) -> None:
             "not known from here: a bench of metal vents itself when it hears nothing"
         )
     lines += [f"  lost: {printable(words)}" for words in found["lost"]] or ["  nothing is lost of what was written"]
+    lines += [f"  {words}" for words in found["gaps"][:MOST_GAPS]]
+    if len(found["gaps"]) > MOST_GAPS:
+        lines.append(f"  and {len(found['gaps']) - MOST_GAPS} more holes, {counted(found['missing_ticks'], 'tick')} in all")
     if found["origin"] != "measured":
         lines.append(f"  {printable(found['origin'])}")
     lines += [f"  wrote {printable(path)}" for path in found["outputs"]]

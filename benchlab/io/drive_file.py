@@ -139,17 +139,34 @@ def trigger_times_s(journal: Journal) -> FloatArray:
     return np.asarray(samples["time_s"][np.concatenate([*first, np.empty(0, int)]).astype(int)], dtype=float)
 
 
+def made_on(header: Mapping[str, Any]) -> str:
+    """The kind of bench that a run, or the run that it replays, was made on.
+
+    >>> made_on({"bench_kind": "replay", "device": {"replayed": "twin"}})
+    'twin'
+    """
+    return str(_replayed(header) or header.get("bench_kind", ""))
+
+
+def is_replay(header: Mapping[str, Any]) -> bool:
+    """Whether a run was played back and nothing was made again."""
+    return bool(_replayed(header)) or header.get("bench_kind") == "replay"
+
+
+def _replayed(header: Mapping[str, Any]) -> Any:
+    device = header.get("device")
+    return device.get("replayed") if isinstance(device, dict) else None
+
+
 def origin(header: Mapping[str, Any]) -> str:
     """Where the numbers of a run are from, where that is not a bench of metal.
 
     >>> origin({"bench_kind": "twin"}), origin({"bench_kind": "serial"})
     ('simulated (twin)', '')
     """
-    device = header.get("device")
-    made_on = device.get("replayed") if isinstance(device, dict) else None
-    kind = str(made_on or header.get("bench_kind", ""))
+    kind = made_on(header)
     words = {"twin": "simulated (twin)", "emulated": "emulated bench, nothing was measured"}.get(kind, "")
-    return ", ".join(["replay of a run", *([words] if words else [])]) if made_on else words
+    return ", ".join(["replay of a run", *([words] if words else [])]) if is_replay(header) else words
 
 
 def origin_words(header: Mapping[str, Any], before: str = "") -> str:

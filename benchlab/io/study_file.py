@@ -35,13 +35,15 @@ HOLD_TOLERANCE = 0.01
 
 @dataclass(frozen=True)
 class StudyRecording:
-    """file: as it is written in the study; path: where it is. analysis: settings of `benchlab analyze`, paths resolved."""
+    """file: as it is written in the study; path: where it is. analysis: settings of `benchlab analyze`, paths resolved.
+    counts: why it counts although its run was not completed, "" where the study does not say so."""
 
     file: str
     path: Path
     kind: Kind
     analysis: dict[str, Any]
     left_out: str = ""
+    counts: str = ""
 
 
 @dataclass(frozen=True)
@@ -167,7 +169,7 @@ def _recording(
     for name in ("lens", "pressure"):
         if name in settings:
             settings[name] = str(folder / settings[name])
-    return StudyRecording(item.file, folder / item.file, kind_of(Path(item.file)), settings, item.left_out)
+    return StudyRecording(item.file, folder / item.file, kind_of(Path(item.file)), settings, item.left_out, item.counts)
 
 
 def _force(folder: Path, item: ForceDocument | None) -> tuple[StudyForceFile, ...]:

@@ -71,11 +71,18 @@ class RecordingDocument(Document):
     file: File
     analysis: AnalysisDocument = AnalysisDocument()
     left_out: Words = ""
+    counts: Words = ""
 
     @model_validator(mode="before")
     @classmethod
     def _short(cls, value: Any) -> Any:
         return in_full(value, {str: "file"}, "the path of a recording, or a mapping with `file:`")
+
+    @model_validator(mode="after")
+    def _one_of_both(self) -> RecordingDocument:
+        if self.left_out and self.counts:
+            raise ValueError("it counts or is left out: remove `left_out:` or `counts:`")
+        return self
 
     @model_validator(mode="after")
     def _is_analysed(self) -> RecordingDocument:

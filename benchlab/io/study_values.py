@@ -67,7 +67,8 @@ class RecordingValues:
     """One recording of a sample. file: as it stands in the study file. status: `measured`, `current` (analysed before) or `read`.
 
     curve_deg: (P,) angle of the rising branch at `StudyValues.curve_MPa`, mean over the cycles, NaN where none reaches.
-    left_out: why its values do not count, "" where they do. warnings: of its analysis.
+    left_out: why its values do not count, "" where they do. warnings: of its analysis. origin: `twin` or `emulated` where nothing was
+    measured, else "".
     """
 
     file: str
@@ -76,6 +77,7 @@ class RecordingValues:
     curve_deg: FloatArray
     left_out: str = ""
     warnings: tuple[str, ...] = ()
+    origin: str = ""
 
 
 @dataclass(frozen=True)
@@ -92,6 +94,13 @@ class SampleValues:
         if self.left_out:
             return ()
         return tuple(cycle for r in self.recordings if not r.left_out for cycle in r.cycles if cycle.known)
+
+    @property
+    def origins(self) -> frozenset[str]:
+        """Of the recordings that it has its value from."""
+        if self.left_out:
+            return frozenset()
+        return frozenset(r.origin for r in self.recordings if not r.left_out and any(c.known for c in r.cycles))
 
     @property
     def angle_deg(self) -> float:
@@ -168,7 +177,7 @@ class StudyValues:
 
     pressure_MPa: at which the designs are compared; hold_tolerance_MPa: how near the pressure has to be.
     curve_MPa: (P,) pressures of all curves. sets: those of the study and, last, all designs.
-    failures: what has no value although it was wanted. left_out: what was left out by the study file.
+    failures: what has no value although it was wanted. left_out: what was left out by the study file or by its own record.
     warnings: of recordings that count. inputs: file as in the study -> SHA-256.
     """
 

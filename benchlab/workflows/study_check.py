@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +19,17 @@ from benchlab.io.study_values import ALL_DESIGNS, Missing
 from benchlab.workflows.measure import open_source
 from benchlab.workflows.outputs import content_hash
 from benchlab.workflows.study_force import force_of
-from benchlab.workflows.study_readings import STATED, Target
-from benchlab.workflows.study_recordings import Place, StudyItem, analyze_settings, read_item, reason_for, study_items
+from benchlab.workflows.study_readings import STATED, Readings, Target
+from benchlab.workflows.study_recordings import (
+    Place,
+    StudyItem,
+    analyze_settings,
+    copies,
+    left_out_of,
+    read_item,
+    reason_for,
+    study_items,
+)
 from benchlab.workflows.study_values import simulated_or_missing
 
 FEWEST = 2
@@ -28,11 +38,15 @@ FEWEST = 2
 
 @dataclass(frozen=True)
 class _Checked:
-    """One recording: what is wrong with it, "" for nothing. stated: it has angles and no pressure, so they are its maker's word."""
+    """One recording: what is wrong with it, "" for nothing. stated: it has angles and no pressure, so they are its maker's word.
+    left_out: why it does not count. origin: as of RecordingValues. measured: as of Readings.content."""
 
     item: StudyItem
     wrong: str
     stated: bool = False
+    left_out: str = ""
+    origin: str = ""
+    measured: str = ""
 
 
 def check_study(path: Path) -> dict[str, Any]:
@@ -44,6 +58,8 @@ def check_study(path: Path) -> dict[str, Any]:
     study = read_study(path)
     target = Target.of(study.pressure_MPa, study.hold_tolerance_MPa)
     checked = {item.place: _checked(item, target) for item in study_items(study, Path())}
+    again = copies({place: (each.item.recording.file, each.measured) for place, each in checked.items()})
+    checked |= {place: replace(checked[place], left_out=checked[place].left_out or why) for place, why in again.items()}
     missing: list[Missing] = []
     left_out: list[Missing] = []
     designs = [_design(design, checked, study, missing, left_out) for design in study.designs]
@@ -57,7 +73,7 @@ def check_study(path: Path) -> dict[str, Any]:
         "sets": [{"name": chosen.name, "designs": list(chosen.designs)} for chosen in study.sets],
         "missing": [_told(each) for each in missing],
         "left_out": [_told(each) for each in left_out],
-        "notes": [_told(each) for each in (*_stated(study, designs), *_notes(study, counts))],
+        "notes": [_told(each) for each in (*_origins(checked), *_stated(study, designs), *_notes(study, counts))],
     }
 
 
@@ -95,9 +111,9 @@ def _sample(
     recordings, wrong = [], []
     for each in mine:
         recording = each.item.recording
-        why = sample.left_out or recording.left_out
-        if recording.left_out:
-            left_out.append(Missing(recording.left_out, design.name, sample.name, recording.file))
+        why = sample.left_out or each.left_out
+        if each.left_out:
+            left_out.append(Missing(each.left_out, design.name, sample.name, recording.file))
         elif each.wrong and not why:
             wrong.append(Missing(each.wrong, design.name, sample.name, recording.file))
         state = "left out" if why else "missing" if each.wrong else "found"
@@ -125,12 +141,14 @@ def _checked(item: StudyItem, target: Target) -> _Checked:
     """Why a recording will have no value, as far as can be told without analysing it, and whether its pressure is told."""
     try:
         if item.recording.kind == "video":
-            return _Checked(item, _wrong_video(item.recording, target))
-        cycles = read_item(item, target, overwrite=False)["readings"].cycles
+            return _Checked(item, _wrong_video(item.recording, target), left_out=item.recording.left_out)
+        readings: Readings = read_item(item, target, overwrite=False)["readings"]
     except BenchlabError as error:
-        return _Checked(item, reason_for(error, item.recording.path))
-    wrong = "; ".join(dict.fromkeys(cycle.flag for cycle in cycles if not cycle.known))
-    return _Checked(item, wrong, any(cycle.method == STATED for cycle in cycles))
+        return _Checked(item, reason_for(error, item.recording.path), left_out=item.recording.left_out)
+    wrong = "; ".join(dict.fromkeys(cycle.flag for cycle in readings.cycles if not cycle.known))
+    stated = any(cycle.method == STATED for cycle in readings.cycles)
+    why = left_out_of(item.recording, readings)
+    return _Checked(item, wrong, stated, why, readings.origin, readings.content)
 
 
 def _wrong_video(recording: StudyRecording, target: Target) -> str:
@@ -176,7 +194,7 @@ def _copies(study: Study, checked: dict[Place, _Checked]) -> Iterator[Missing]:
         first: dict[str, Place] = {}
         for path, place in alike.items() if len(alike) > 1 else ():
             other = first.setdefault(content_hash(path), place)
-            if other != place:
+            if other != place and not checked[place].left_out:
                 file = checked[other].item.recording.file
                 why = f"has the same content as {file} of {other[0]} {other[1]}: a copy is no repetition"
                 yield Missing(why, place[0], place[1], checked[place].item.recording.file)
@@ -197,6 +215,17 @@ def _stated(study: Study, designs: list[dict[str, Any]]) -> Iterator[Missing]:
             f"{counted(len(files), 'table')} of angles without a pressure: the angles are taken as those at "
             f"{study.pressure_MPa:g} MPa, on the maker's word"
         )
+
+
+def _origins(checked: dict[Place, _Checked]) -> Iterator[Missing]:
+    """That recordings which count are not measured, or that some are and some are not."""
+    counting = Counter(each.origin for each in checked.values() if not each.left_out and not each.wrong)
+    made = {"": "measured", "twin": "simulated on the twin", "emulated": "of an emulated bench"}
+    told = ", ".join(f"{count} {made[kind]}" for kind, count in sorted(counting.items()))
+    if len(counting) > 1:
+        yield Missing(f"MIXED ORIGINS: of the recordings that count, {told}: a difference may be that of the benches")
+    elif counting and "" not in counting:
+        yield Missing(f"nothing was measured: of the recordings that count, {told}")
 
 
 def _notes(study: Study, counts: dict[str, int]) -> Iterator[Missing]:

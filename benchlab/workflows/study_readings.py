@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from benchlab.io.angle_table import AngleTable, is_series, read_angle_table
 from benchlab.io.drive_file import SCHEMA as DRIVE
-from benchlab.io.drive_file import origin, read_drive_file, sensor_sd
+from benchlab.io.drive_file import is_replay, made_on, origin, read_drive_file, sensor_sd
 from benchlab.io.drive_gaps import gaps_of
+from benchlab.io.journal import Journal
 from benchlab.io.nexus import schema_of
 from benchlab.io.run_file import read_run_file
 from benchlab.io.study_values import CycleValue, nan_mean
@@ -26,6 +28,12 @@ CURVE_POINTS = 36
 
 STATED = "table"
 """Method of an angle of a table without pressure: its maker says that it is at the study's."""
+
+NOT_MEASURED = ("twin", "emulated")
+"""Benches on which nothing is measured."""
+
+TWIN_CAMERA = "camera of a simulated bench (twin)"
+"""What a film that was drawn of a twin says of itself."""
 
 NO_PRESSURE = "its pressure is not known"
 
@@ -45,11 +53,19 @@ class Target:
 
 @dataclass(frozen=True)
 class Readings:
-    """cycles: never empty; one that has no value says why. curve_deg: (P,). warnings: of the source."""
+    """cycles: never empty; one that has no value says why. curve_deg: (P,). warnings: of the source. origin: as of RecordingValues.
+
+    unfit: why it does not count unless the study says that it does; never: why it does not whatever the study says. content: of what was
+    measured, alike in copies, "" where only the file can tell.
+    """
 
     cycles: tuple[CycleValue, ...]
     curve_deg: FloatArray
     warnings: tuple[str, ...] = ()
+    origin: str = ""
+    unfit: str = ""
+    never: str = ""
+    content: str = ""
 
 
 def read_run(path: Path, target: Target) -> Readings:
@@ -62,18 +78,43 @@ def read_run(path: Path, target: Target) -> Readings:
     if series.pressure_MPa is None:
         return _without(NO_PRESSURE, target, warnings)
     trace = Trace(series.pressure_MPa, np.degrees(series.angle_rad), np.degrees(series.angle_sd_rad), series.sure)
-    return _of_trace(trace, series.flag, target, warnings)
+    readings = _of_trace(trace, series.flag, target, warnings)
+    return replace(readings, origin="twin" if TWIN_CAMERA in str(run.recording.get("title", "")) else "")
 
 
 def _of_drive(path: Path, target: Target) -> Readings:
-    """The angle by the flex sensor over the pressure that was measured or, where none was, asked for."""
+    """What a drive file gives, where it is from, and whether it counts."""
     run = read_drive_file(path)
-    samples, stop = run.samples, run.stop or {"reason": "no record of its end"}
+    kind, fields = made_on(run.header), ("monitor_V", "flex_V", "pressure_MPa", "angle_deg")
+    known = any(np.isfinite(run.samples[name]).any() for name in fields)
+    content = hashlib.sha256(b"".join(run.samples[name].tobytes() for name in fields)).hexdigest() if known else ""
+    return replace(
+        _by_flex(run, target),
+        origin=kind if kind in NOT_MEASURED else "",
+        unfit=_unfit(run),
+        never="a replay of a run is not another measurement" if is_replay(run.header) else "",
+        content=content,
+    )
+
+
+def _unfit(run: Journal) -> str:
+    """Why a run does not count, "" where it does."""
+    stop = run.stop
+    if stop is None:
+        return "the run was not completed: no record of its end"
+    if stop.get("reason") != "completed":
+        return f"the run was not completed: {stop.get('reason')}"
+    return "the actuator was not empty after its vent" if stop.get("empty") is False else ""
+
+
+def _by_flex(run: Journal, target: Target) -> Readings:
+    """The angle by the flex sensor over the pressure that was measured or, where none was, asked for."""
+    samples = run.samples
     origin_told = origin(run.header)
     warnings = [f"no run on a bench of metal: {origin_told}"] if origin_told else []
     warnings += ["its angle is by the flex sensor, not from a film"]
-    if stop["reason"] != "completed":
-        warnings.append(f"the run was not completed: {stop['reason']}")
+    if unfit := _unfit(run):
+        warnings.append(unfit)
     warnings += [f"lost {words}" for words in run.losses_told]
     warnings += [gap.words for gap in gaps_of(run)]
     angle, pressure = (np.asarray(samples[name], dtype=float) for name in ("angle_deg", "pressure_MPa"))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import os
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,7 @@ from benchlab.io.study_file import Study, StudyRecording
 from benchlab.workflows.analyze import analyze
 from benchlab.workflows.outputs import Outputs
 from benchlab.workflows.settings import AnalyzeSettings
-from benchlab.workflows.study_readings import Target, read_run, read_table
+from benchlab.workflows.study_readings import Readings, Target, read_run, read_table
 
 Place = tuple[str, str, int]
 """Design, sample, and which of its recordings."""
@@ -89,6 +89,26 @@ def _analysed(item: StudyItem, target: Target, overwrite: bool) -> dict[str, Any
         "readings": read_run(outputs.run_file, target),
         "sha256": (read_provenance(outputs.run_file) or {}).get("sha256", ""),
     }
+
+
+def left_out_of(recording: StudyRecording, readings: Readings) -> str:
+    """Why a recording does not count: the study's reason, or the one that it gives itself; "" where it does."""
+    return recording.left_out or readings.never or ("" if recording.counts else readings.unfit)
+
+
+def copies(measured: Mapping[Place, tuple[str, str]]) -> dict[Place, str]:
+    """Which recordings hold what another one before them measured, and whose it is. measured: file and content of each."""
+    first: dict[str, Place] = {}
+    found = {}
+    for place, (file, content) in measured.items():
+        other = first.setdefault(content, place)
+        if content and other != place:
+            design, sample, _ = other
+            if measured[other][0] != file:
+                found[place] = (
+                    f"has the same samples as {measured[other][0]} of {design} {sample}: a copy is no repetition"
+                )
+    return found
 
 
 def reason_for(error: BenchlabError, path: Path) -> str:

@@ -6,7 +6,7 @@ import functools
 import math
 import os
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +27,7 @@ from benchlab.io.study_values import (
 from benchlab.workflows.batch import run_batch
 from benchlab.workflows.study_force import force_of
 from benchlab.workflows.study_readings import Target
-from benchlab.workflows.study_recordings import Place, read_item, reason_for, study_items
+from benchlab.workflows.study_recordings import Place, copies, left_out_of, read_item, reason_for, study_items
 from benchlab.workflows.study_simulated import simulated_of
 
 Progress = Callable[[int, int | None], None]
@@ -38,10 +38,12 @@ RECORDINGS = "recordings"
 
 @dataclass(frozen=True)
 class _Read:
-    """What became of a recording. sha256: of its content, "" where it could not be read."""
+    """What became of a recording. sha256: of its content, "" where it could not be read. measured: of what was measured in it, "" where
+    only the file can tell."""
 
     values: RecordingValues
     sha256: str = ""
+    measured: str = ""
 
 
 def collect(
@@ -67,6 +69,10 @@ def collect(
         read[item.place] = _failed(item.recording, failed, target) if failed else _done(item.recording, outcome.result)
         if progress:
             progress(len(read), len(items))
+    places = [item.place for item in items]
+    for place, why in copies({place: (read[place].values.file, read[place].measured) for place in places}).items():
+        values = read[place].values
+        read[place] = replace(read[place], values=replace(values, left_out=values.left_out or why))
     return _assembled(study, target, read)
 
 
@@ -74,9 +80,15 @@ def _done(recording: StudyRecording, result: dict[str, Any] | None) -> _Read:
     assert result is not None
     readings = result["readings"]
     values = RecordingValues(
-        recording.file, result["status"], readings.cycles, readings.curve_deg, recording.left_out, readings.warnings
+        recording.file,
+        result["status"],
+        readings.cycles,
+        readings.curve_deg,
+        left_out_of(recording, readings),
+        readings.warnings,
+        readings.origin,
     )
-    return _Read(values, result["sha256"])
+    return _Read(values, result["sha256"], readings.content)
 
 
 def _failed(recording: StudyRecording, error: BenchlabError, target: Target) -> _Read:

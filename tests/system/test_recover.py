@@ -100,7 +100,8 @@ def test_damage_in_the_middle_is_told(benchlab, journal: Path) -> None:
     journal.write_bytes(data)
     found = benchlab("recover", journal, "--json").json
     assert found["complete"] and found["samples"] == 399
-    assert "in 1 record from byte" in found["lost"][0]
+    assert found["lost"][0].startswith("1 record at byte") and "of which 106 bytes are left" in found["lost"][0]
+    assert found["missing_ticks"] == 1 and found["gaps"][0].startswith("no sample of 1 tick between")
 
 
 def test_files_that_are_there_are_kept_unless_overwrite_is_given(benchlab, journal: Path) -> None:

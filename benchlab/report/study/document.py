@@ -78,7 +78,7 @@ def _doubts(report: StudyReport) -> list[Section]:
     """What was left out and why, what failed, and every warning."""
     values = report.values
     blocks: list[Block] = []
-    for what, found in (("Failed or missing", values.failures), ("Left out by the study file", values.left_out)):
+    for what, found in (("Failed or missing", values.failures), ("Left out", values.left_out)):
         if found:
             blocks += [Words(f"{what}: {len(found)}."), _items([(one.what, one.why) for one in found])]
     if not blocks:

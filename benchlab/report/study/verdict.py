@@ -200,7 +200,7 @@ def _missing(report: StudyReport) -> list[str]:
     values = report.values
     told = (
         (len(values.failures), "without a value (failed or missing)"),
-        (len(values.left_out), "left out by the study file"),
+        (len(values.left_out), "left out"),
     )
     parts = [f"{count} {what}" for count, what in told if count]
     return [f"Not everything counts: {'; '.join(parts)}. See “Left out and failed”."] if parts else []

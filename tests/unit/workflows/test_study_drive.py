@@ -7,8 +7,11 @@ import pytest
 
 from benchlab.io.drive_file import write_drive_file
 from benchlab.io.journal import read_journal
+from benchlab.io.study_file import read_study
+from benchlab.workflows.study_check import check_study
 from benchlab.workflows.study_folder import look_into
 from benchlab.workflows.study_readings import Target, read_run
+from benchlab.workflows.study_values import collect
 from tests.unit.io.journals import header_of, samples_of, write_journal
 
 TARGET = Target.of(0.15, 0.0005)
@@ -68,3 +71,73 @@ def test_a_new_study_takes_drive_files_and_leaves_their_tables_and_a_twins_truth
     found = look_into(tmp_path)
     assert [path.name for path in found.recordings] == ["run.h5"]
     assert {path.name for path, _ in found.unused} == {"run.csv", "run.truth.csv"}
+
+
+def study_of(tmp_path, files: str):
+    (tmp_path / "study.yaml").write_text(f"title: T\npressure_MPa: 0.15\ndesigns:\n  a: {{samples: {{{files}}}}}\n")
+    return tmp_path / "study.yaml"
+
+
+def drive(tmp_path, name, kind="serial", angle=1.0, **options):
+    """A drive file whose angles are so many times the usual."""
+    samples = samples_of()
+    samples["angle_deg"] *= angle
+    header = options.pop("header", header_of(samples, kind))
+    write_drive_file(
+        tmp_path / f"{name}.h5", read_journal(write_journal(tmp_path / f"{name}.journal", samples, header, **options))
+    )
+
+
+STOPPED = {"reason": "stuck sensor", "words": "", "vented": True}
+
+
+def left_out_of(values):
+    (design,) = values.designs
+    return {sample.name: sample.recordings[0].left_out for sample in design.samples}
+
+
+def test_a_run_that_was_not_completed_counts_only_where_the_study_says_so(tmp_path):
+    drive(tmp_path, "whole")
+    drive(tmp_path, "stopped", angle=1.1, stop=STOPPED)
+    drive(tmp_path, "full", angle=1.2, stop={"reason": "completed", "vented": True, "empty": False})
+    drive(tmp_path, "cut", angle=1.3, stop=None)
+    path = study_of(tmp_path, "s1: whole.h5, s2: stopped.h5, s3: full.h5, s4: cut.h5")
+    values = collect(read_study(path), tmp_path / "out")
+    assert left_out_of(values) == {
+        "s1": "",
+        "s2": "the run was not completed: stuck sensor",
+        "s3": "the actuator was not empty after its vent",
+        "s4": "the run was not completed: no record of its end",
+    }
+    assert [sample.name for sample in values.designs[0].counted] == ["s1"]
+    told = check_study(path)
+    assert told["designs"][0]["n"] == 1 and len(told["left_out"]) == 3
+    path = study_of(tmp_path, "s1: whole.h5, s2: {recordings: [{file: stopped.h5, counts: stopped after its hold}]}")
+    assert left_out_of(collect(read_study(path), tmp_path / "out")) == {"s1": "", "s2": ""}
+    assert check_study(path)["designs"][0]["n"] == 2
+
+
+def test_a_replay_and_a_copy_are_no_samples(tmp_path):
+    drive(tmp_path, "one")
+    drive(tmp_path, "again", header={**header_of(samples_of()), "title": "the same, told otherwise"})
+    replayed = {**header_of(samples_of(), "replay"), "device": {"kind": "replay", "replayed": "serial"}}
+    drive(tmp_path, "replay", angle=1.1, header=replayed)
+    path = study_of(tmp_path, "s1: one.h5, s2: again.h5, s3: {recordings: [{file: replay.h5, counts: I want it}]}")
+    assert left_out_of(collect(read_study(path), tmp_path / "out")) == {
+        "s1": "",
+        "s2": "has the same samples as one.h5 of a s1: a copy is no repetition",
+        "s3": "a replay of a run is not another measurement",
+    }
+    assert check_study(path)["designs"][0]["n"] == 1
+
+
+def test_what_was_not_measured_and_a_mixture_are_told_by_the_check(tmp_path):
+    drive(tmp_path, "one", "twin")
+    drive(tmp_path, "two", "twin", angle=1.1)
+    drive(tmp_path, "real", angle=1.2)
+    notes = check_study(study_of(tmp_path, "s1: one.h5, s2: two.h5"))["notes"]
+    assert notes[0]["why"] == "nothing was measured: of the recordings that count, 2 simulated on the twin"
+    notes = check_study(study_of(tmp_path, "s1: one.h5, s2: two.h5, s3: real.h5"))["notes"]
+    assert notes[0]["why"].startswith(
+        "MIXED ORIGINS: of the recordings that count, 1 measured, 2 simulated on the twin"
+    )
