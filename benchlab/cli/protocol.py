@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from benchlab.cli.options import Finite
-from benchlab.errors import printable
+from benchlab.errors import counted, printable
 
 MOST_ROWS = 40
 """Rows of the table of steps on the terminal."""
@@ -115,27 +115,42 @@ def _tell(found: dict[str, Any], err: bool) -> None:
 
 
 def _numbers(found: dict[str, Any]) -> list[str]:
-    jumps = found["jumps"]
     lines = [
-        f"  lasts {found['duration_s']:g} s, {found['samples']} samples at {found['rate_Hz']:g} Hz, {len(found['steps'])} steps",
+        f"  lasts {found['duration_s']:g} s, {found['samples']} samples at {found['rate_Hz']:g} Hz, {counted(len(found['steps']), 'step')}",
     ]
     if found["peak_MPa"]:
         lines.append(f"  peak {found['peak_MPa']:.4g} MPa, limit {found['limit_MPa']:g} MPa")
-    if found["slew_MPa_per_s"]:
-        lines.append(f"  slew at most {found['slew_MPa_per_s']:.4g} MPa/s")
-    for way in ("rise", "fall"):
-        if count := jumps[f"{way}s"]:
-            words = f"{count} {way}{'s' * (count > 1)} at once, the largest by {jumps[f'largest_{way}_MPa']:.4g} MPa"
-            lines.append(f"  {words}: as fast as the bench can")
+    if speed := _speed(found["slew_MPa_per_s"], found["jumps"]):
+        lines.append(f"  {speed}")
     if found["closed_loop"]:
         gains = "gains in the file" if found["control"] else "no gains in the file: give the run --control"
         lines.append(
             f"  controls the angle, {_angles(found['reference_deg'])}°, with up to {found['limit_MPa']:g} MPa; {gains}"
         )
     lines.append(f"  ends {'vented' if found['ends_vented'] else 'under pressure; the runner vents'}")
-    if found["bench"]:
-        lines.append(f"  fits bench {found['bench']['name']}, up to {found['bench']['ceiling_MPa']:.4g} MPa")
-    return lines
+    return [*lines, f"  {_bench(found)}"]
+
+
+def _speed(slew_MPa_per_s: float | None, jumps: dict[str, Any]) -> str:
+    """How fast it is within steps, and that it jumps besides, in one line: either alone misleads."""
+    ways = [
+        f"{counted(count, way)} of up to {jumps[f'largest_{way}_MPa']:.4g} MPa"
+        for way in ("rise", "fall")
+        if (count := jumps[f"{way}s"])
+    ]
+    jumping = f"{' and '.join(ways)} at once, as fast as the bench can" if ways else ""
+    slew = f"slew at most {slew_MPa_per_s:.4g} MPa/s" if slew_MPa_per_s else ""
+    return f"{slew} within steps; besides, {jumping}" if slew and jumping else slew or jumping
+
+
+def _bench(found: dict[str, Any]) -> str:
+    """Which bench it was checked against, if any."""
+    if bench := found["bench"]:
+        return f"checked against bench {bench['name']}: fits, up to {bench['ceiling_MPa']:.4g} MPa"
+    twin_MPa = found["twin_ceiling_MPa"]
+    too_high = f"; too high for the twin, which takes up to {twin_MPa:g} MPa"
+    over = too_high if (found["peak_MPa"] or 0) > twin_MPa else ""
+    return f"not checked against a bench: --calibration FILE does that{over}"
 
 
 def _change(step: dict[str, Any]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 from importlib.resources import files
 from pathlib import Path
@@ -72,10 +73,9 @@ def protocol_path(protocol: str | Path) -> Path:
         return shipped[name]
     path = Path(protocol)
     if not path.exists() and len(path.parts) <= 1:
-        known = ", ".join(shipped)
-        raise UsageError(
-            "no such file, and no protocol of this name", file=path, hint=f"give a file, or one of {known}"
-        )
+        close = difflib.get_close_matches(path.stem, shipped, n=1)
+        hint = f"did you mean {close[0]}?" if close else f"give a file, or one of {', '.join(shipped)}"
+        raise UsageError("no such file, and no protocol of this name", file=path, hint=hint)
     return path
 
 

@@ -55,9 +55,8 @@ def survey(segments: Sequence[Segment], bounds: Bounds) -> Survey:
     3000.0
     """
     found = _walked(segments, State(), bounds)
-    return Survey(
-        found.duration_s, found.steps, found.after, (*dict.fromkeys(found.problems), *_of_whole(found, bounds))
-    )
+    problems = dict.fromkeys((*found.problems, *_triggers_as_one(segments, [])))
+    return Survey(found.duration_s, found.steps, found.after, (*problems, *_of_whole(found, bounds)))
 
 
 def _of_whole(found: Survey, bounds: Bounds) -> Iterator[Problem]:
@@ -75,6 +74,26 @@ def _of_whole(found: Survey, bounds: Bounds) -> Iterator[Problem]:
     if found.steps > MAX_STEPS:
         what = f"would be {found.steps:.7g} steps, and {MAX_STEPS:,} are the most"
         yield Problem(0, what, "repeat less often, or split it into several protocols")
+
+
+def _triggers_as_one(segments: Sequence[Segment], now: list[int]) -> Iterator[Problem]:
+    """Triggers with no segment that takes time between them. now: line of the trigger of this moment, if there was one."""
+    for segment in segments:
+        match segment:
+            case Signal(kind="trigger"):
+                if now:
+                    same = f"that of line {now[0]}" if now[0] != segment.line else "another of this line"
+                    what = f"a trigger at the same moment as {same}: the two would be one pulse"
+                    yield Problem(segment.line, what, "remove one, or write a segment that takes time between them")
+                now[:] = [segment.line]
+            case Signal():
+                continue
+            case Repeat():
+                yield from _triggers_as_one(segment.segments, now)
+                if now and segment.times > 1:
+                    yield from _triggers_as_one(segment.segments, now)
+            case _:
+                now.clear()
 
 
 def _walked(segments: Sequence[Segment], state: State, bounds: Bounds) -> Survey:

@@ -20,6 +20,7 @@ from benchlab.report.protocol_strip import (
     lined,
     named,
     plot_events,
+    plot_key,
     plot_segments,
 )
 from benchlab.report.wording import fitted, width_in
@@ -67,7 +68,9 @@ def draw_protocol_figure(plan: Plan, note: str = "", ceiling_MPa: float | None =
     small: dict[str, Any] = {"fontsize": 9, "color": GREY, "parse_math": False}
     hidden = len(plan.events) - len(lined(plan.events))
     more = f"; {hidden} marks and triggers are not drawn" if hidden else ""
-    figure.text(_LEFT / _WIDTH, 1 - 0.53 / height, fitted(note + more, _ROOM, 9), **small)
+    line = 1 - 0.53 / height
+    key_in = plot_key(figure, plan, (_LEFT + _ROOM) / _WIDTH, line + 0.04 / height)
+    figure.text(_LEFT / _WIDTH, line, fitted(note + more, _ROOM - key_in - 0.1, 9), **small)
     return figure
 
 

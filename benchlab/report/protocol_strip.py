@@ -12,6 +12,7 @@ from benchlab.report.wording import drawable, width_in
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 STRIP_IN, ROW_IN, RIGHT_IN = 0.24, 0.17, 0.25
 """Heights of the strip and of a row of words, and the page's margin on the right that words may use, in inches."""
@@ -22,7 +23,8 @@ MAX_BLOCKS, MAX_LINES, MAX_NAMED = 400, 100, 15
 
 _TRIGGER, _MOVING = "#009E73", "#cfe2f0"
 _SHADES = {"hold": "#e3e3e3", "vent": "#f6f6f6", "curvature": "#d5ece3"}
-"""Of blocks, by kind of step; what moves the pressure has the other."""
+_MEANT = {"curvature": "angle controlled"}
+"""Of blocks, by kind of step; what moves the pressure has the other. What a kind is called in the key."""
 
 
 def plot_segments(ax: Axes, plan: Plan, inches: float) -> None:
@@ -41,6 +43,22 @@ def plot_segments(ax: Axes, plan: Plan, inches: float) -> None:
                 break
     ax.set_ylim(0, 1)
     ax.set_axis_off()
+
+
+def plot_key(figure: Figure, plan: Plan, right: float, height: float) -> float:
+    """What the colours of blocks mean, up to `right` and about `height` of the figure; returns its width in inches."""
+    from matplotlib.patches import Patch
+
+    kinds = list(dict.fromkeys(step.kind for step in plan.steps))
+    moving = [kind for kind in kinds if kind not in _SHADES]
+    shades = {", ".join(moving): _MOVING} if moving else {}
+    shades |= {_MEANT.get(kind, kind): shade for kind, shade in _SHADES.items() if kind in kinds}
+    blocks = [Patch(facecolor=shade, edgecolor=GREY, linewidth=0.4, label=words) for words, shade in shades.items()]
+    place: dict[str, Any] = {"loc": "center right", "bbox_to_anchor": (right, height), "ncols": len(blocks)}
+    close: dict[str, Any] = {"borderpad": 0, "borderaxespad": 0, "handlelength": 1.2, "handleheight": 0.9}
+    gaps: dict[str, Any] = {"handletextpad": 0.4, "columnspacing": 1.2, "frameon": False, "labelcolor": GREY}
+    figure.legend(handles=blocks, fontsize=LETTERS, **place, **close, **gaps)
+    return sum(width_in(words, LETTERS) + 0.3 for words in shades)
 
 
 def block_words(steps: list[Step]) -> list[str]:

@@ -7,6 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from benchlab.devices.twin.bench import twin_bench
 from benchlab.errors import InputError, UsageError, counted
 from benchlab.io.files import check_new_file, written_whole
 from benchlab.io.plan_table import write_plan_csv
@@ -63,6 +64,7 @@ def show_protocol(
         "alike_steps": [asdict(step) for step in seen.steps],
         "events": [asdict(event) for event in plan.events],
         "bench": bench,
+        "twin_ceiling_MPa": twin_bench().ceiling_MPa,
         "outputs": [str(out) for out in outs],
     }
 
@@ -88,14 +90,14 @@ def list_protocols() -> list[dict[str, Any]]:
 
 
 def summary_line(plan: Plan, seen: Overview) -> str:
-    """Duration, samples, peak and slew in words."""
+    """Duration, samples, peak, slew and jumps in words."""
     parts = [f"{plan.duration_s:g} s", f"{len(plan.time_s):,} samples at {plan.rate_Hz:g} Hz"]
     if seen.peak_MPa:
         parts.append(f"peak {seen.peak_MPa:.4g} MPa")
     if seen.slew_MPa_per_s:
-        parts.append(f"at most {seen.slew_MPa_per_s:.4g} MPa/s")
-    if seen.rises:
-        parts.append(f"{counted(seen.rises, 'step')} up at once")
+        parts.append(f"slew at most {seen.slew_MPa_per_s:.4g} MPa/s")
+    if jumps := seen.rises + seen.falls:
+        parts.append(f"{counted(jumps, 'jump')} at once")
     if seen.reference_deg is not None:
         parts.append(f"angle {seen.reference_deg[0]:g}° to {seen.reference_deg[1]:g}°")
     return ", ".join(parts)

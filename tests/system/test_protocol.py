@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from benchlab.bench import Bench
-from benchlab.io.bench_file import write_bench
 from benchlab.io.protocol_file import read_protocol, shipped_protocols
+from tests.benches import write_bench
 
 ROOT = Path(__file__).resolve().parents[2]
 BAD = "title: bad\nlimit_MPa: 0.3\nsegments:\n  - ramp: {to: 10 psi, duration_s: 1}\n  - hold: {duration_s: -1}\n"
@@ -28,8 +28,8 @@ def test_show_tells_numbers_steps_and_marks(benchlab: Callable) -> None:
         "Linear ramp",
         "lasts 5 s, 501 samples at 100 Hz, 3 steps",
         "peak 0.35 MPa, limit 0.35 MPa",
-        "slew at most 0.14 MPa/s",
-        "1 fall at once, the largest by 0.35 MPa",
+        "slew at most 0.14 MPa/s within steps; besides, 1 fall of up to 0.35 MPa at once, as fast as the bench can\n",
+        "not checked against a bench: --calibration FILE does that\n",
         "ends vented",
         "2.5 s  mark: top",
     ):
@@ -63,6 +63,25 @@ def test_the_last_folder_of_out_is_made_as_by_every_command(benchlab: Callable, 
         assert done.code == 0 and out.exists(), done.err
         deep = benchlab(*words, tmp_path / "none" / "of" / out.name)
         assert deep.code == 2 and "none: no such folder" in deep.err
+
+
+def test_steps_alone_are_told_as_fast_and_a_pressure_above_the_twins_is_told(
+    benchlab: Callable, tmp_path: Path
+) -> None:
+    shown = benchlab("protocol", "show", "blocked_force_steps").out
+    assert "\n  50 rises of up to 0.35 MPa and 50 falls of up to 0.35 MPa at once, as fast as the bench can\n" in shown
+    assert "slew at most" not in shown
+    high = tmp_path / "high.yaml"
+    high.write_text("title: high\nlimit_MPa: 0.6\nsegments:\n  - ramp: {to_MPa: 0.36, duration_s: 2}\n")
+    shown = benchlab("protocol", "show", high).out
+    assert "not checked against a bench" in shown and "too high for the twin, which takes up to 0.35 MPa" in shown
+    strong = tmp_path / "strong.yaml"
+    write_bench(
+        strong,
+        Bench("strong", limit_MPa=0.4, limit_reason="a test", calibrated=True, gauge="a gauge", date="2026-01-01"),
+    )
+    shown = benchlab("protocol", "show", high, "--calibration", strong).out
+    assert "checked against bench strong: fits, up to 0.4 MPa" in shown and "twin" not in shown
 
 
 def test_json_says_all_of_the_plan(benchlab: Callable) -> None:
@@ -115,6 +134,8 @@ def test_a_bench_that_may_not_be_asked_for_it_is_named(benchlab: Callable, tmp_p
         (["show", "linear_ramp", "--out", "plan.pdf"], "neither a .png nor a .csv"),
         (["show", "linear_ramp", "--out", "a.png", "--out", "a.png"], "named twice"),
         (["show", "nothing"], "one of blocked_force_steps"),
+        (["show", "liner_ramp"], "did you mean linear_ramp?"),
+        (["show", "linear_ramp.yml"], "did you mean linear_ramp?"),
         (["show", "linear_ramp", "--max-duration-s", "nan"], "finite"),
         (["show", "linear_ramp", "--rate-Hz", "1000"], "give 1 to 500"),
         (["show"], "PROTOCOL"),

@@ -35,7 +35,7 @@ def test_a_dry_run_says_what_would_run_and_opens_nothing(
 
 REFUSED = [
     (["high.yaml"], 3, "line 5: ramp 0 to 0.36 MPa in 1 s reaches 0.36 MPa"),
-    (["above.yaml", "--bench", "serial:/dev/nowhere"], 3, "the ceiling of bench not calibrated"),
+    (["above.yaml", "--bench", "serial:/dev/nowhere"], 3, "the ceiling of the bench not calibrated"),
     (["nothing.yaml"], 2, "no protocol of this name"),
     (
         ["short.yaml", "--bench", "metal"],
@@ -87,7 +87,7 @@ def test_a_folder_without_permission_or_room_is_refused_before_the_bench_is_open
     monkeypatch.setattr(run_workflow, "open_bench", lambda *a, **k: pytest.fail("opened"))
     access = os.access
     with monkeypatch.context() as patch:  # root may write everywhere
-        patch.setattr(run_prepare.os, "access", lambda path, mode: not mode & os.W_OK and access(path, mode))
+        patch.setattr(os, "access", lambda path, mode: not mode & os.W_OK and access(path, mode))
         done = benchlab("run", short, "--out", tmp_path)
     assert done.code == 2 and "the output folder is read-only" in done.err
     usage = run_prepare.shutil.disk_usage(tmp_path)

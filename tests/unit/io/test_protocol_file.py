@@ -258,6 +258,8 @@ def test_a_longer_protocol_may_be_allowed(tmp_path: Path) -> None:
 
 def test_what_is_no_file_and_no_name_is_refused_with_the_names(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"give a file, or one of blocked_force_steps.*sine_tracking"):
+        read_protocol("nothing")
+    with pytest.raises(UsageError, match=r"did you mean linear_ramp\?"):
         read_protocol("linear_rampe")
     with pytest.raises(UsageError, match="no such file"):
         read_protocol(tmp_path / "none.yaml")

@@ -5,7 +5,7 @@ import time
 import pytest
 
 from benchlab.protocol.curvature import AngleHold, AngleSine
-from benchlab.protocol.groups import Repeat, Segment
+from benchlab.protocol.groups import Repeat, Segment, Signal
 from benchlab.protocol.segments import Hold, Ramp, Sine, Triangle, Vent
 from benchlab.protocol.survey import MAX_STEPS, MAX_TICKS, Bounds, survey
 
@@ -84,3 +84,18 @@ def test_nothing_that_takes_time() -> None:
 def test_ticks_are_capped_whatever_the_duration_allowed() -> None:
     (problem,) = told([Hold(50_000.0, 0.1)], Bounds(100.0, 0.35, None, 1e6))
     assert "5e+06 ticks at 100 Hz" in problem[1]
+
+
+def test_triggers_at_one_moment_are_one_pulse_and_refused() -> None:
+    def trigger(line: int) -> Signal:
+        return Signal("trigger", "camera", line)
+
+    wait, mark = Vent(0.5), Signal("mark", "a", 9)
+    assert not told([trigger(1), mark, wait, trigger(2), Repeat(9, (wait, trigger(4))), wait])
+    assert told([trigger(1), mark, trigger(2), wait]) == [
+        (2, "a trigger at the same moment as that of line 1: the two would be one pulse")
+    ]
+    assert [line for line, _ in told([wait, Repeat(3, (wait, trigger(2))), trigger(3)])] == [3]
+    assert [line for line, _ in told([wait, Repeat(3, (trigger(2), wait, trigger(3)))])] == [2]
+    alone = told([wait, Repeat(1000, (mark, trigger(2)))])
+    assert alone == [(2, "a trigger at the same moment as another of this line: the two would be one pulse")]

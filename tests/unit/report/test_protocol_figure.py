@@ -5,6 +5,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from benchlab.io.protocol_file import read_protocol, shipped_protocols
+from benchlab.protocol.curvature import AngleHold
 from benchlab.protocol.groups import Repeat, Signal
 from benchlab.protocol.plan import PlanEvent
 from benchlab.protocol.segments import Hold, Ramp, Sine, Vent
@@ -63,3 +64,18 @@ def test_words_of_marks_that_come_again_stand_once() -> None:
 def test_marks_beside_each_other_get_rows_of_their_own() -> None:
     events = tuple(PlanEvent(time, "mark", "some words") for time in (0.0, 0.1, 5.0, 9.9, 10.0))
     assert event_rows(events, 10.0, 8.0) == [1, 0, 0, 1, 0]
+
+
+def test_the_colours_of_blocks_have_a_key() -> None:
+    parts = (Ramp(0.1, duration_s=1.0), Hold(1.0), Sine(0.1, 0.05, 1.0, 2), AngleHold(60.0, 5.0), Vent(1.0))
+    figure = draw_protocol_figure(unroll(parts, "all", 100.0, 0.35), "a long note " * 40)
+    (key,) = figure.legends
+    assert [text.get_text() for text in key.get_texts()] == ["ramp, sine", "hold", "vent", "angle controlled"]
+    colours = {block.get_facecolor() for block in key.get_patches()}
+    blocks = {patch.get_facecolor() for patch in figure.axes[-1].patches}
+    assert colours == blocks and len(colours) == 4
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    box = key.get_window_extent(canvas.get_renderer())
+    others = [*figure.axes[-1].texts, *figure.texts]
+    assert not any(box.overlaps(text.get_window_extent(canvas.get_renderer())) for text in others)
