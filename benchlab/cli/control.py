@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -66,25 +67,21 @@ def flex(
     found = calibrate_flex_sensor(run, angle, calibration, out, angle_starts_s, overwrite)
     gain, offset, fit = found["gain_deg_per_V"], found["offset_deg"], found["lack_of_fit"]
     percent = 100 * found["confidence"]
-    click.echo(
-        f"angle = gain · volts + offset, from {counted(found['holds'], 'hold')}; R² {found['r_squared']:.5f}", err=True
-    )
+    _say(f"angle = gain · volts + offset, from {counted(found['holds'], 'hold')}; R² {found['r_squared']:.5f}")
     for name, value, unit in (("gain", gain, "°/V"), ("offset", offset, "°")):
         ends = f"{value['low']:.5g} to {value['high']:.5g}"
-        click.echo(f"  {name} {value['value']:.5g} {unit} ({percent:.0f} %: {ends})", err=True)
-    click.echo(
-        f"  one sample scatters about the line by {found['sd_deg']:.2f}°, a mean of a hold by {found['sd_of_holds_deg']:.2f}°",
-        err=True,
+        _say(f"  {name} {value['value']:.5g} {unit} ({percent:.0f} %: {ends})")
+    _say(
+        f"  one sample scatters about the line by {found['sd_deg']:.2f}°, a mean of a hold by {found['sd_of_holds_deg']:.2f}°"
     )
     lack = (
         f"; lack of fit F{tuple(fit['df'])} = {fit['F']:.3g}, p {fit['p']:.2g}" if fit else "; no level was held twice"
     )
-    click.echo(f"  straight? bow {found['bow_deg']['value']:+.2f}°, p {_p(found['bow_p'])}{lack}", err=True)
+    _say(f"  straight? bow {found['bow_deg']['value']:+.2f}°, p {_p(found['bow_p'])}{lack}")
     if found["hysteresis_deg"] is not None:
         most = found["hysteresis_max_deg"]
-        click.echo(
-            f"  falling less rising: {found['hysteresis_deg']:+.2f}° on the average, {most:.2f}° at most", err=True
-        )
+        _say(f"  falling less rising: {found['hysteresis_deg']:+.2f}° on the average, {most:.2f}° at most")
+    _tell_replaced(found["replaced"], calibration.name)
     _tell_files(found, as_json)
 
 
@@ -146,27 +143,42 @@ def track(run: Path, as_json: bool, **options: Any) -> None:
     Examples:
       benchlab control track results/sine.h5 --out results
     """
+    from benchlab.control.tracking import late_words
     from benchlab.workflows.control_track import track_run
 
     found = track_run(run, **options)
     for name, words in (("measured", "against the flex sensor"), ("true", "against the truth of the twin")):
         if (one := found[name]) is not None:
-            lag = "" if one["lag_s"] is None else f", lag {1000 * one['lag_s']:.0f} ms"
+            lag = "" if one["lag_s"] is None else f", {late_words(one['lag_s'])}"
             r = "-" if one["r_squared"] is None else f"{one['r_squared']:.4f}"
-            click.echo(
+            _say(
                 f"{words}: R² {r}, RMSE {one['rmse_deg']:.2f}°, mean |e| {one['mae_deg']:.2f}°, max {one['max_deg']:.2f}°{lag}; "
-                f"tip RMSE {one['tip_rmse_mm']:.2f} mm",
-                err=True,
+                f"tip RMSE {one['tip_rmse_mm']:.2f} mm"
             )
     cost = found["measured"]
-    click.echo(
+    _say(
         f"pressure: peak {cost['peak_MPa']:.4g} MPa, moved by {cost['variation_MPa_per_s']:.3g} MPa/s, at the ceiling "
-        f"{100 * cost['at_ceiling']:.1f} %, at zero {100 * cost['at_zero']:.1f} % of the time",
-        err=True,
+        f"{100 * cost['at_ceiling']:.1f} %, at zero {100 * cost['at_zero']:.1f} % of the time"
     )
     left = f"; {cost['missing']} without an angle" if cost["missing"] else ""
-    click.echo(f"{cost['samples']} samples after {cost['settle_s']:g} s of settling{left}", err=True)
+    _say(f"{cost['samples']} samples after {cost['settle_s']:g} s of settling{left}")
     _tell_files(found, as_json)
+
+
+def _say(line: str) -> None:
+    """A line with numbers on standard error, their minus as it is printed."""
+    click.echo(re.sub(r"(?<![\w.])-(?=\d)", "−", line), err=True)
+
+
+def _tell_replaced(replaced: dict[str, Any] | None, file: str) -> None:
+    """What the bench file had until now, where it is changed in place."""
+    if replaced is None:
+        return
+    words = "had no flex line, and has this one now"
+    if replaced["gain_deg_per_V"] is not None:
+        line = f"{replaced['gain_deg_per_V']:.5g} °/V, {replaced['offset_deg']:.5g}°"
+        words = f"had {line}, from {printable(replaced['from'] or 'not told')}; this line is in its place"
+    _say(f"  {printable(file)} {words}")
 
 
 def _p(value: float | None) -> str:
@@ -190,16 +202,14 @@ def _tell_plants(found: dict[str, Any]) -> None:
     console.print(table)
     worst = found["plants"][found["worst"]]
     margins = worst["margins"]
-    click.echo(
+    _say(
         f"kp {found['kp_MPa_per_deg']:.4g} MPa/°, ki {found['ki_MPa_per_deg_s']:.4g} MPa/(°·s): integral time "
-        f"{found['integral_time_s']:.3g} s, closed loop {found['closed_loop_s']:.3g} s; lead {found['lead_s']:.3g} s",
-        err=True,
+        f"{found['integral_time_s']:.3g} s, closed loop {found['closed_loop_s']:.3g} s; lead {found['lead_s']:.3g} s"
     )
     gain = "infinite" if margins["gain_margin"] is None else f"{margins['gain_margin']:.2f}"
-    click.echo(
+    _say(
         f"worst at {worst['pressure_MPa']:.3f} MPa: gain margin {gain}, phase margin {margins['phase_margin_deg']:.0f}°, "
-        f"Ms {margins['max_sensitivity']:.2f}",
-        err=True,
+        f"Ms {margins['max_sensitivity']:.2f}"
     )
 
 

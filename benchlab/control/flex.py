@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import f as f_distribution
+from scipy.stats import spearmanr
 
 from benchlab.bench import Line
 from benchlab.control.holds import Hold, find_holds
@@ -26,6 +27,13 @@ SETTLED = 0.5
 """The first half of a hold is left out: actuator and sensor are on their way."""
 
 LEAST_LEVELS = 3
+
+LEAST_DEG_PER_MPA, MOST_DEG = 10.0, 720.0
+"""The stiffest actuator of the paper (slw 30) bends by 22 °/MPa; an angle that moves by less than half of that is not in degrees, nor is
+one that goes twice round."""
+
+FOLLOWS, FITS = 0.8, 0.8
+"""Spearman's correlation of angle with pressure, and R² of the line: an angle with less is of another run."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +52,7 @@ class FlexCalibration:
     volts, angle_deg, pressure_MPa: (H,). rising: (H,) whether the hold before was lower. line: with intervals and the test of a bow.
     lack_of_fit: None without levels that were held twice. hysteresis_deg: mean over levels held both ways of (falling − rising)
     distance from the line, NaN without such; hysteresis_max_deg: the largest. sample_sd_deg: of one sample about its hold.
-    sd_deg: of one sample about the line, which is the Line's.
+    sd_deg: of one sample about the line, which is the Line's. left_out: holds without volts or angle.
     """
 
     volts: FloatArray
@@ -56,6 +64,7 @@ class FlexCalibration:
     hysteresis_deg: float
     hysteresis_max_deg: float
     sample_sd_deg: float
+    left_out: int = 0
 
     @property
     def sd_deg(self) -> float:
@@ -87,7 +96,8 @@ def calibrate_flex(
     lack of fit (Draper & Smith, Applied Regression Analysis, ch. 2). Angles at a level differ a little from time to time and both angle and
     volts have noise, so distances from the line are compared between and within levels, not angles at the same volts.
 
-    Raises InputError for fewer than four usable holds or three levels, and where volts do not follow the angle.
+    Raises InputError for fewer than four usable holds or three levels, for an angle that is not in degrees or does not grow with the
+    pressure, and where volts do not follow the angle.
     """
     holds, left_out = [], 0
     for hold in find_holds(time_s, command_MPa, LEAST_HOLD_S):
@@ -102,12 +112,18 @@ def calibrate_flex(
             hint="run the protocol flex_calibration, and film all of it",
         )
     pressure, volts, angle, scatter_V = (np.array(column) for column in zip(*holds))
+    _check_angles(pressure, angle)
     line = fit_straight_line(volts, angle, confidence)
     if line.gain.low <= 0 <= line.gain.high:
         raise InputError(
             f"the volts do not follow the angle: the gain is {line.gain.value:.3g} °/V, with an interval from {line.gain.low:.3g} to "
             f"{line.gain.high:.3g}",
             hint="is the flex sensor wired, and is the angle on the run's clock?",
+        )
+    if line.r_squared < FITS:
+        raise InputError(
+            f"the line explains {100 * line.r_squared:.0f} % of the angle's variance where {100 * FITS:.0f} % are the least",
+            hint="is the angle of this run and on its clock, and is the flex sensor fixed to the actuator?",
         )
     rising = np.concatenate([[True], np.diff(pressure) > 0])
     residual = angle - line.of(volts)
@@ -122,7 +138,28 @@ def calibrate_flex(
         hysteresis_deg=float(differences.mean()) if len(differences) else math.nan,
         hysteresis_max_deg=float(np.abs(differences).max()) if len(differences) else math.nan,
         sample_sd_deg=abs(line.gain.value) * math.sqrt(float(np.square(scatter_V).mean())),
+        left_out=left_out,
     )
+
+
+def _check_angles(pressure_MPa: FloatArray, angle_deg: FloatArray) -> None:
+    """InputError for angles of the holds, (H,) each, that no actuator has at these pressures."""
+    moved, over = float(np.ptp(angle_deg)), float(np.ptp(pressure_MPa))
+    if moved < LEAST_DEG_PER_MPA * over:
+        raise InputError(
+            f"the angle moves by {moved:.3g}° over {over:.3g} MPa, and the stiffest actuator bends by {2 * LEAST_DEG_PER_MPA * over:.2g}°: "
+            f"are these radians? ({moved:.3g} rad are {math.degrees(moved):.0f}°)",
+            hint="give angle_deg in degrees, of this run",
+        )
+    if moved > MOST_DEG:
+        raise InputError(f"the angle moves by {moved:.4g}°, more than twice round", hint="give angle_deg in degrees")
+    follows = float(spearmanr(pressure_MPa, angle_deg).statistic)
+    if follows < FOLLOWS:
+        raise InputError(
+            f"the angle does not grow with the pressure: their rank correlation over {len(angle_deg)} holds is {follows:.2f}, and "
+            f"{FOLLOWS:g} is the least".replace("-", "−"),
+            hint="is the angle of this run, on its clock (--angle-starts-s), and above 0 when bent?",
+        )
 
 
 def _point(

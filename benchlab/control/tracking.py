@@ -130,6 +130,16 @@ def lag_s(time_s: FloatArray, reference: FloatArray, measured: FloatArray, longe
     return float((best - most + between) * dt)
 
 
+def late_words(late_s: float) -> str:
+    """A lag in words.
+
+    >>> late_words(0.031), late_words(-0.007), late_words(0.0001)
+    ('late by 31 ms', 'ahead by 7 ms', 'neither late nor ahead')
+    """
+    ms = f"{abs(1000 * late_s):.0f}"
+    return "neither late nor ahead" if ms == "0" else f"{'late' if late_s > 0 else 'ahead'} by {ms} ms"
+
+
 def _rms(values: FloatArray) -> float:
     return math.sqrt(float(np.square(values).mean()))
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from benchlab.actuator import tip_position_mm
-from benchlab.control.tracking import Tracking
+from benchlab.control.tracking import Tracking, late_words
 from benchlab.report.figures import DPI, figure_class
 from benchlab.report.panels import BLUE, GREY, dress
 from benchlab.report.wording import drawable
@@ -123,9 +123,7 @@ def _words(found: Tracking, true: Tracking | None) -> list[str]:
     lines = [
         f"{_r_squared(found)}  (1 − Σe²/Σ(r − r̄)²)",
         f"RMSE {found.rmse_deg:.2f}°, mean |e| {found.mae_deg:.2f}°, max {found.max_deg:.1f}°",
-        f"lag {1000 * found.lag_s:.0f} ms".replace("-", "−")
-        if np.isfinite(found.lag_s)
-        else "lag not told by this reference",
+        late_words(found.lag_s) if np.isfinite(found.lag_s) else "lag not told by this reference",
         f"tip RMSE {found.tip_rmse_mm:.2f} mm, max {found.tip_max_mm:.1f} mm",
         f"effort ∫|du| {found.variation_MPa:.3g} MPa, peak {found.peak_MPa:.3f} MPa",
         f"at the ceiling {100 * found.at_ceiling:.1f} %, at zero {100 * found.at_zero:.1f} %",

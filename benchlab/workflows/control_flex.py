@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from benchlab.bench import Line
+from benchlab.control.alongside import lay_alongside
 from benchlab.control.flex import FlexCalibration, calibrate_flex
-from benchlab.errors import UsageError
+from benchlab.errors import UsageError, counted
 from benchlab.io.angle_series import read_angle_series
 from benchlab.io.bench_file import BenchFile, read_bench_file, write_bench_file
 from benchlab.io.drive_file import trigger_times_s
@@ -22,6 +23,9 @@ from benchlab.workflows.driven import DrivenRun, read_driven
 
 NOT_STRAIGHT = 0.01
 """Under this p of a test the sensor is told not to be straight."""
+
+LATE_S = 0.5
+"""An angle that is later or earlier than the volts by more is told: the second half of a hold may be another hold's."""
 
 
 def calibrate_flex_sensor(
@@ -38,18 +42,20 @@ def calibrate_flex_sensor(
     file = read_bench_file(calibration)
     target = out or calibration
     picture = target.with_suffix(".flex.png")
-    check_new_file(target, overwrite or (target == calibration and file.bench.flex is None))
-    check_new_file(picture, overwrite)
     starts, how = _starts(run, angle, angle_starts_s)
     seen = read_angle_series(angle)
     found = calibrate_flex(
         run.column("time_s"), run.column("command_MPa"), run.column("flex_V"), seen.time_s + starts, seen.angle_deg
     )
+    check_new_file(target, overwrite or (target == calibration and file.bench.flex is None))
+    check_new_file(picture, overwrite)
     origin = f"{source.name} (sha256 {sha256(source)[:16]}) and angles of {angle.name} (sha256 {sha256(angle)[:16]})"
     origin += "; simulated" if run.simulated else ""
     bench = replace(file.bench, flex=_short(found.bench_line))
     figure = draw_flex_figure(
-        found, f"Flex sensor of {bench.name}", f"{run.bench_words}; run {source.name}, angles {angle.name}"
+        found,
+        f"Flex sensor of {bench.name}{', simulated' if run.simulated else ''}",
+        f"{run.bench_words}; run {source.name}, angles {angle.name}",
     )
     with written_whole(picture) as temporary:
         try:
@@ -57,7 +63,9 @@ def calibrate_flex_sensor(
         except OSError as error:
             raise cannot_write(error, picture) from error
         write_bench_file(target, BenchFile(bench, file.readings, origin), _comment(found))
-    return _summary(found, run, starts, how, _warnings(found, run, file), [target, picture])
+    late_s = lay_alongside(run.column("time_s"), run.column("flex_V"), seen.time_s + starts, seen.angle_deg).late_s
+    summary = _summary(found, run, starts, how, _warnings(found, run, file, late_s), [target, picture])
+    return {**summary, "replaced": _replaced(file.bench.flex, file.flex_from) if target == calibration else None}
 
 
 def _starts(run: DrivenRun, angle: Path, told: float | None) -> tuple[float, str]:
@@ -80,8 +88,22 @@ def _short(line: Line) -> Line:
     return Line(*(float(f"{value:.7g}") for value in (line.gain, line.offset, line.sd)))
 
 
-def _warnings(found: FlexCalibration, run: DrivenRun, file: BenchFile) -> list[str]:
+def _replaced(line: Line | None, origin: str) -> dict[str, Any]:
+    """The flex line that the bench file had, None each where it had none."""
+    if line is None:
+        return {"gain_deg_per_V": None, "offset_deg": None, "from": None}
+    return {"gain_deg_per_V": line.gain, "offset_deg": line.offset, "from": origin or None}
+
+
+def _warnings(found: FlexCalibration, run: DrivenRun, file: BenchFile, late_s: float) -> list[str]:
     warnings = []
+    if abs(late_s) > LATE_S:
+        way = "later" if late_s > 0 else "earlier"
+        warnings.append(
+            f"the angle is {abs(late_s):.2f} s {way} than the volts: is it on the run's clock (--angle-starts-s)?"
+        )
+    if found.left_out:
+        warnings.append(f"{counted(found.left_out, 'hold')} without volts or angle left out; {len(found.volts)} used")
     if run.bench.name != file.bench.name:
         warnings.append(f"the run was made on bench {run.bench.name}, and the file is of bench {file.bench.name}")
     tests = {"a bow": found.line.bow_p, "lack of fit": found.lack_of_fit.p if found.lack_of_fit else np.nan}

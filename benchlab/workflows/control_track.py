@@ -31,13 +31,13 @@ def track_run(
     if not 1 <= length_mm <= 10_000:
         raise UsageError(f"--length-mm is {length_mm:g}", hint="give the length of the arc, 1 to 10000 mm")
     run = read_driven(source)
-    paths = _paths(out, source.stem, overwrite)
     tracked = _closed_loop(run, truth)
     try:
         found = _track(tracked, tracked.angle_deg, settle_s, length_mm)
     except InputError as error:
         raise InputError(error.what, file=source, hint=error.hint) from error
     true = None if tracked.true_deg is None else _track(tracked, tracked.true_deg, settle_s, length_mm)
+    paths = _paths(out, source.stem, overwrite)
     note = f"{run.bench_words}; {_gains(run)}"
     figure = draw_tracking_figure(tracked, found, f"{run.title} ({source.name})", note, length_mm, true)
     with written_whole(paths[1]) as temporary:
@@ -97,4 +97,7 @@ def _gains(run: DrivenRun) -> str:
     if not control:
         return "gains not told"
     words = f"PI kp {control['kp_MPa_per_deg']:.3g} MPa/°, ki {control['ki_MPa_per_deg_s']:.3g} MPa/(°·s)"
-    return words + (f" with feed-forward, lead {control['lead_s']:.2g} s" if control.get("feed_forward") else "")
+    if not control.get("feed_forward"):
+        return f"{words}, no feed-forward"
+    by = f" by {control['curve']}" if control.get("curve") else ""
+    return f"{words}; feed-forward{by}, lead {control['lead_s']:.2g} s"

@@ -9,12 +9,16 @@ from typing import Any
 import numpy as np
 
 from benchlab.bench import Bench
+from benchlab.control.alongside import lay_alongside
 from benchlab.errors import InputError
 from benchlab.io.angle_series import read_angle_series
 from benchlab.io.drive_file import origin, read_drive_file
 from benchlab.io.journal import Journal
 from benchlab.io.recorded_bench import recorded_bench
 from benchlab.units import FloatArray
+
+COVERED, ALIKE, LATE_S = 0.95, 0.9, 0.25
+"""A truth spans so much of its run's time, is so correlated with the measured angle, and is not later or earlier by more."""
 
 
 @dataclass(frozen=True)
@@ -71,11 +75,27 @@ def read_driven(path: Path) -> DrivenRun:
 
 
 def truth_of(path: Path | None, run: DrivenRun) -> FloatArray | None:
-    """(T,) true angle at the run's ticks, of a table on its clock; None without one."""
+    """(T,) true angle at the run's ticks, of a table on its clock; None without one.
+
+    Raises InputError for a run of metal, and for a truth that is not of this run: another time, or another motion.
+    """
     if path is None:
         return None
     if not run.simulated:
         hint = "leave --truth out"
         raise InputError("was made on a bench of which nobody knows the truth", file=run.path, hint=hint)
     seen = read_angle_series(path)
-    return np.interp(run.column("time_s"), seen.time_s, seen.angle_deg, left=np.nan, right=np.nan)
+    found = lay_alongside(run.column("time_s"), run.column("angle_deg"), seen.time_s, seen.angle_deg)
+    wrong = []
+    if found.covered < COVERED:
+        wrong.append(f"it covers {100 * found.covered:.0f} % of the run's time")
+    if found.correlation < ALIKE:
+        wrong.append(f"its correlation with the measured angle is {found.correlation:.2f}".replace("-", "−"))
+    if abs(found.late_s) > LATE_S:
+        wrong.append(
+            f"it is {abs(found.late_s):.2g} s {'later' if found.late_s > 0 else 'earlier'} than the measured angle"
+        )
+    if wrong:
+        hint = f"give {run.path.stem}.truth.csv, which was written with the run"
+        raise InputError(f"is not the truth of {run.path.name}: {', and '.join(wrong)}", file=path, hint=hint)
+    return found.other

@@ -19,7 +19,7 @@ from benchlab.control.pi import PI
 from benchlab.devices.twin.bench import twin_bench
 from benchlab.devices.twin.twin import Twin
 from benchlab.errors import UsageError
-from benchlab.io.bench_file import read_bench_file, write_bench
+from benchlab.io.bench_file import read_bench_file, write_bench_file
 from benchlab.io.control_file import ControlFile, read_control
 from benchlab.io.drive_file import read_drive_file, write_drive_file
 from benchlab.io.twin_file import read_twin
@@ -97,6 +97,8 @@ def test_what_is_printed(guided: Path, benchlab, tmp_path: Path) -> None:
     assert flexed.json["gain_deg_per_V"]["low"] < twin_bench().flex.gain < flexed.json["gain_deg_per_V"]["high"]
     tracked = benchlab("control", "track", guided / "sine.h5", "--out", tmp_path / "t", "--settle-s", 10, "--json")
     assert tracked.code == 0 and tracked.json["true"] is None and "against the flex sensor: R² 0.99" in tracked.err
+    assert re.search(r"(late|ahead) by \d+ ms; tip", tracked.err) and "-" not in tracked.err.splitlines()[0]
+    assert "offset −66.6" in flexed.err
 
 
 def test_angles_on_another_clock_are_moved_onto_the_runs(guided: Path, benchlab, tmp_path: Path) -> None:
@@ -115,9 +117,51 @@ def test_angles_on_another_clock_are_moved_onto_the_runs(guided: Path, benchlab,
 
 def test_a_bench_file_of_another_bench_is_told(guided: Path, benchlab, tmp_path: Path) -> None:
     other = tmp_path / "other.yaml"
-    write_bench(other, replace(read_bench_file(guided / "bench.yaml").bench, name="left", flex=None))
+    file = read_bench_file(guided / "bench.yaml")
+    write_bench_file(other, replace(file, bench=replace(file.bench, name="left", flex=None), flex_from=""))
     done = benchlab("control", "flex", guided / "flex.h5", "--angle", guided / "flex.truth.csv", "--calibration", other)
     assert done.code == 0 and "the run was made on bench bench, and the file is of bench left" in done.err
+
+
+def test_a_flex_line_that_is_replaced_in_place_is_told(guided: Path, benchlab, tmp_path: Path) -> None:
+    bench, file = tmp_path / "mine.yaml", read_bench_file(guided / "bench.yaml")
+    write_bench_file(bench, replace(file, bench=replace(file.bench, flex=None), flex_from=""))
+    call = (
+        "control",
+        "flex",
+        guided / "flex.h5",
+        "--angle",
+        guided / "flex.truth.csv",
+        "--calibration",
+        bench,
+        "--json",
+    )
+    first = benchlab(*call)
+    assert first.code == 0 and "mine.yaml had no flex line, and has this one now" in first.err
+    again = benchlab(*call, "--overwrite")
+    assert (
+        again.code == 0 and "mine.yaml had 66.67" in again.err and "−66.67" in again.err and "from flex.h5" in again.err
+    )
+    assert again.json["replaced"]["gain_deg_per_V"] == pytest.approx(first.json["gain_deg_per_V"]["value"], rel=1e-6)
+    elsewhere = benchlab(*call, "--out", tmp_path / "other.yaml")
+    assert elsewhere.code == 0 and elsewhere.json["replaced"] is None
+
+
+def test_wrong_input_is_told_before_a_file_that_exists(guided: Path, benchlab, tmp_path: Path) -> None:
+    flex = ("control", "flex", guided / "flex.h5", "--calibration", guided / "bench.yaml", "--angle")
+    other = benchlab(*flex, guided / "sine.truth.csv")
+    assert other.code == 3 and "does not grow with the pressure" in other.err
+    track = benchlab("control", "track", guided / "sine.h5", "--out", guided, "--truth", guided / "flex.truth.csv")
+    assert track.code == 3 and "is not the truth of sine.h5" in track.err and "give sine.truth.csv" in track.err
+    with (guided / "sine.truth.csv").open(encoding="utf-8") as file:
+        next(file)
+        rows = [(float(row["time_s"]), row["angle_deg"]) for row in csv.DictReader(file)]
+    for name, after_s, words in (("late", 0.6, "0.6 s later"), ("short", 0.0, "it covers 58 % of the run's time")):
+        kept = rows[: 3001 if name == "short" else None]
+        text = "\n".join(["time_s,angle_deg", *(f"{time + after_s:.4f},{angle}" for time, angle in kept)])
+        (tmp_path / f"{name}.csv").write_text(text + "\n", encoding="utf-8")
+        done = benchlab("control", "track", guided / "sine.h5", "--out", tmp_path, "--truth", tmp_path / f"{name}.csv")
+        assert done.code == 3 and words in done.err, done.err
 
 
 def test_a_film_begins_at_the_one_trigger_of_its_run(guided: Path) -> None:

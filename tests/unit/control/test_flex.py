@@ -107,3 +107,25 @@ def test_missing_volts_and_angles_are_passed_over_and_too_few_refused() -> None:
         calibrate_flex(t, np.linspace(0, 0.3, len(t)), volts, t, angle)
     with pytest.raises(InputError, match="do not follow"):
         calibrate_flex(t, command, np.random.default_rng(0).normal(2, 0.1, len(t)), t, angle)
+
+
+def test_angles_that_are_not_degrees_or_not_of_this_run_are_refused() -> None:
+    t, command, volts, angle = run(np.random.default_rng(8))
+    with pytest.raises(InputError, match=r"are these radians\? \(2\.09 rad are 120°\)"):
+        calibrate_flex(t, command, volts, t, np.radians(angle))
+    with pytest.raises(InputError, match="more than twice round"):
+        calibrate_flex(t, command, volts, t, np.degrees(angle))
+    with pytest.raises(InputError, match="rank correlation over 29 holds is −0"):
+        calibrate_flex(t, command, volts, t, -angle)
+    with pytest.raises(InputError, match="does not grow with the pressure"):
+        calibrate_flex(t, command, volts, t, 60 + 50 * np.sin(t))
+    stiffest = calibrate_flex(t, command, volts, t, angle * 7.8 / 120)  # slw 30 of the paper at 0.35 MPa
+    assert stiffest.line.gain.value == pytest.approx(GAIN * 7.8 / 120, rel=0.01)
+
+
+def test_a_line_that_explains_little_is_refused_and_holds_without_angle_are_counted() -> None:
+    t, command, volts, angle = run(np.random.default_rng(9))
+    loose = volts + np.repeat(np.random.default_rng(1).normal(0, 1.5, 30), 200)
+    with pytest.raises(InputError, match=r"the line explains \d+ % of the angle's variance"):
+        calibrate_flex(t, command, loose, t, angle)
+    assert calibrate_flex(t, command, volts, t[:4000], angle[:4000]).left_out == 10
