@@ -52,7 +52,11 @@ class Transport(typing.Protocol):
 
 
 class SerialTransport:
-    """A serial port, for nobody else while it is open. BenchError where it cannot be opened, with the ports that there are."""
+    """A serial port, for nobody else while it is open. BenchError where it cannot be opened, with the ports that there are.
+
+    It is locked for programs that lock too (flock, by pyserial) and closed to those that do not (TIOCEXCL, which does not hold for root):
+    opening a Nano's port resets it, in mid run too.
+    """
 
     def __init__(self, port: str, baud: int = BAUD) -> None:
         self.name = port
@@ -61,6 +65,7 @@ class SerialTransport:
             self._port = serial.Serial(port, baud, timeout=0, write_timeout=WRITE_S, exclusive=exclusive)
         except (OSError, ValueError) as error:
             raise _cannot_open(port, error) from error
+        _exclusive(self._port, True)
         self._low_latency = False
         with suppress(AttributeError, OSError, ValueError, NotImplementedError):
             self._port.set_low_latency_mode(True)
@@ -92,6 +97,7 @@ class SerialTransport:
             raise self._gone(error) from error
 
     def close(self) -> None:
+        _exclusive(self._port, False)
         with suppress(OSError):
             self._port.close()
 
@@ -106,6 +112,17 @@ class SerialTransport:
 
     def _gone(self, error: Exception) -> LostError:
         return LostError(f"the port is gone: {error}", file=self.name, hint="was the cable pulled, or the supply lost?")
+
+
+def _exclusive(port: serial.Serial, whether: bool) -> None:
+    """Close the port to other programs, or open it again: a pty would stay closed. Where the system has it: not on Windows."""
+    if sys.platform == "win32":
+        return
+    import fcntl
+    import termios
+
+    with suppress(OSError, serial.SerialException, TypeError):
+        fcntl.ioctl(port.fileno(), termios.TIOCEXCL if whether else termios.TIOCNXCL)
 
 
 def ports() -> list[str]:

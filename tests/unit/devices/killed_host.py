@@ -31,9 +31,10 @@ while True:
 def vented_after_s(folder: Path, times: int, seed: int = 1) -> Iterator[tuple[str, float]]:
     """For each of so many hosts: how it went, KILL or STOP by turns, and the seconds from then to code 0."""
     rng, log = random.Random(seed), folder / "events.txt"
-    emulator = Emulator(Bench("host", calibrated=True), lockstep=False, log=log)
-    try:
-        for index in range(times):
+    for index in range(times):
+        # Each a Nano of its own: unlike a port, a pty stays closed to others when the host that closed it is killed.
+        emulator = Emulator(Bench("host", calibrated=True), lockstep=False, log=log)
+        try:
             how = (signal.SIGKILL, signal.SIGSTOP)[index % 2]
             host = subprocess.Popen([sys.executable, "-c", HOST, emulator.greeting], stdout=subprocess.PIPE, text=True)
             assert host.stdout is not None
@@ -48,8 +49,8 @@ def vented_after_s(folder: Path, times: int, seed: int = 1) -> Iterator[tuple[st
             host.kill()
             host.wait()
             host.stdout.close()
-    finally:
-        emulator.close()
+        finally:
+            emulator.close()
 
 
 def first_zero(log: Path, after_s: float) -> float:

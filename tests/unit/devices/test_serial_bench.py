@@ -110,8 +110,12 @@ def test_another_protocol_is_refused(line: FaultyLine, monkeypatch: pytest.Monke
         SerialBench(line, BENCH)
 
 
-def test_it_waits_until_the_firmware_has_measured_its_supply(line: FaultyLine) -> None:
+def test_it_waits_until_the_firmware_has_measured_its_supply(line: FaultyLine, emulator: Emulator) -> None:
     """Said hello to as soon as it listens, it has not yet; it is asked again."""
+    for until, what in ((0.2, "reset"), (0.23, "state")):
+        line.advance(until)
+        line.read(0)
+        emulator.tell(what)
     about = SerialBench(line, replace(BENCH, reference_counts=225.0)).about()
     assert about["reference_counts"] == 225 and about["supply_V"] == 5.0
     assert about["supply_between_V"] == pytest.approx([1024 / 225, 1.2 * 1024 / 225])

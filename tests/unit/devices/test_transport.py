@@ -9,6 +9,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 import serial
@@ -75,6 +76,27 @@ def test_a_second_program_is_refused(line: tuple[int, str]) -> None:
     assert "BenchError" in second.stderr and "in use by another program" in second.stderr
     port.close()
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def opened_without_a_lock(name: str) -> subprocess.CompletedProcess[str]:
+    """By a program that asks for no lock, as `cat` or an upload does; not as root, who is let in."""
+    nobody = {"user": 65534} if os.getuid() == 0 else {}
+    words = ["sh", "-c", f"exec 3<>{name}"]
+    return subprocess.run(
+        words, capture_output=True, text=True, check=False, env={**os.environ, "LC_ALL": "C"}, **nobody
+    )
+
+
+def test_a_program_that_does_not_lock_cannot_open_the_port_in_mid_run(line: tuple[int, str]) -> None:
+    """Opened, a Nano's port resets it."""
+    _, name = line
+    Path(name).chmod(0o666)
+    assert opened_without_a_lock(name).returncode == 0
+    port = SerialTransport(name)
+    refused = opened_without_a_lock(name)
+    assert refused.returncode != 0 and "busy" in refused.stderr
+    port.close()
+    assert opened_without_a_lock(name).returncode == 0
 
 
 @pytest.mark.parametrize(
