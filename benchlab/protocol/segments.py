@@ -6,11 +6,11 @@ after the other. `line` is that of the protocol file, 0 where there is none. Wha
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
+from benchlab.protocol.shapes import PRESSURE, level, ramp, sine
 from benchlab.protocol.stretch import DECIMALS, CannotBeginError, State, Stretch, slope
-from benchlab.protocol.waves import constant, sine_from, straight, there_and_back
+from benchlab.protocol.waves import there_and_back
 
 
 @dataclass(frozen=True)
@@ -30,25 +30,7 @@ class Ramp:
     def begun(self, state: State) -> Stretch:
         """CannotBeginError where the pressure is not known, or where a ramp of a given rate is there already."""
         start = known_pressure(state, "a ramp starts from the present pressure")
-        change = abs(self.to_MPa - start)
-        if self.rate_MPa_per_s is not None and change == 0:
-            raise CannotBeginError(
-                f"a ramp to {self.to_MPa:g} MPa from {start:g} MPa takes no time", "write a hold, or remove it"
-            )
-        duration_s = self.duration_s if self.rate_MPa_per_s is None else change / self.rate_MPa_per_s
-        assert duration_s is not None
-        duration_s = round(duration_s, DECIMALS)
-        return Stretch(
-            kind="ramp",
-            label=f"ramp {start:g} to {self.to_MPa:g} MPa in {duration_s:g} s",
-            duration_s=duration_s,
-            start=start,
-            end=self.to_MPa,
-            low=min(start, self.to_MPa),
-            high=max(start, self.to_MPa),
-            slew=slope(change, duration_s),
-            of=straight(start, self.to_MPa, duration_s),
-        )
+        return ramp(PRESSURE, start, self.to_MPa, self.duration_s, self.rate_MPa_per_s)
 
 
 @dataclass(frozen=True)
@@ -68,7 +50,7 @@ class Hold:
         """CannotBeginError where it is at the present pressure and that is not known."""
         if (pressure := self.pressure_MPa) is None:
             pressure = known_pressure(state, "a hold without pressure_MPa keeps the present pressure")
-        return _level("hold", f"hold {pressure:g} MPa for {self.duration_s:g} s", pressure, self.duration_s)
+        return level(PRESSURE, pressure, self.duration_s)
 
 
 @dataclass(frozen=True)
@@ -84,7 +66,8 @@ class Vent:
     rounds: int = field(default=1, init=False)
 
     def begun(self, state: State) -> Stretch:
-        return _level("vent", f"vent for {self.duration_s:g} s", 0.0, self.duration_s)
+        label = f"vent for {self.duration_s:g} s"
+        return replace(level(PRESSURE, 0.0, self.duration_s), kind="vent", label=label)
 
 
 @dataclass(frozen=True)
@@ -104,24 +87,7 @@ class Sine:
     def begun(self, state: State) -> Stretch:
         """CannotBeginError where the present pressure is not known or outside of the sine."""
         start = known_pressure(state, "a sine goes on from the present pressure")
-        low, high = sine_range(self.mean_MPa, self.amplitude_MPa)
-        if not low <= start <= high:
-            raise CannotBeginError(
-                f"the sine lies between {low:g} and {high:g} MPa and the present pressure is {start:g} MPa",
-                "write a ramp into that range before it",
-            )
-        period_s = round(1 / self.frequency_Hz, DECIMALS)
-        return Stretch(
-            kind="sine",
-            label=f"sine {self.mean_MPa:g} ± {self.amplitude_MPa:g} MPa, {self.frequency_Hz:g} Hz",
-            duration_s=period_s,
-            start=start,
-            end=start,
-            low=low,
-            high=high,
-            slew=slope(2 * math.pi * self.amplitude_MPa, period_s),
-            of=sine_from(start, self.mean_MPa, self.amplitude_MPa, period_s),
-        )
+        return sine(PRESSURE, start, self.mean_MPa, self.amplitude_MPa, self.frequency_Hz)
 
 
 @dataclass(frozen=True)
@@ -164,11 +130,6 @@ class Triangle:
         )
 
 
-def sine_range(mean: float, amplitude: float) -> tuple[float, float]:
-    """Lowest and highest value of a sine."""
-    return round(mean - amplitude, DECIMALS), round(mean + amplitude, DECIMALS)
-
-
 def known_pressure(state: State, why: str) -> float:
     """The present pressure; CannotBeginError after a closed loop, whose controller decided it."""
     if state.pressure_MPa is None:
@@ -177,8 +138,3 @@ def known_pressure(state: State, why: str) -> float:
             "write a vent, or a hold with pressure_MPa, before it",
         )
     return state.pressure_MPa
-
-
-def _level(kind: str, label: str, pressure_MPa: float, duration_s: float) -> Stretch:
-    at = pressure_MPa
-    return Stretch(kind, label, duration_s, start=at, end=at, low=at, high=at, slew=0.0, of=constant(at))
