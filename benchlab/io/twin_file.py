@@ -1,6 +1,7 @@
 """Twin files: curve, effects, faults, seed and camera of a simulated bench as strict YAML; and the twin that comes with benchlab.
 
-    curve: tw9_slw10.h5          of `benchlab simulate`, beside this file; the shipped one where left out
+    curve: tw9_slw10.h5          of `benchlab simulate`, beside this file, or tw3_slw10, the shipped one, by name; where it is left out the
+                                 shipped one too, or that of `--design`
     seed: 7
     effects:
       friction: {half_width_deg_per_MPa: 6}     other parameters keep their typical values
@@ -96,7 +97,7 @@ def read_twin(path: Path | None) -> TwinSettings:
         curve, told = _curve(path)
         return TwinSettings(curve, design=path.stem, length_mm=told.get("length_mm", LENGTH_MM), own_curve=True)
     found = read_document(path, _Twin)
-    if found.curve is None:
+    if found.curve in (None, SHIPPED_CURVE):
         curve, told = shipped_curve(), {"length_mm": LENGTH_MM}
     else:
         curve, told = _curve(path.parent / found.curve)

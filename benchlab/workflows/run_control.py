@@ -79,7 +79,7 @@ def check_reach(plan: Plan, top_MPa: float, curve: ResponseCurve | None, feed_fo
         raise InputError(
             words, hint="ask for a smaller angle, give the actuator's --design or --curve, or take feed_forward: false"
         )
-    return [f"{words}: the controller will stand at its limit there"]
+    return [f"{words}: if that is right, the controller will stand at its limit"]
 
 
 def control_told(chosen: Chosen | None, curve: ResponseCurve | None) -> dict[str, Any] | None:

@@ -12,6 +12,7 @@ import pytest
 from benchlab.control.tuning import Lag, tune
 from benchlab.io.control_file import control_of_tuning, write_control
 from benchlab.io.drive_file import read_drive_file
+from benchlab.io.twin_file import read_twin
 
 LOOP = """\
 title: Loop
@@ -112,6 +113,13 @@ def test_what_is_believed_of_an_actuator_does_not_replace_the_curve_of_a_twin(fo
     assert done.code == 0 and done.json["control"]["curve"] == "soft.csv"
     samples = read_drive_file(folder / "ff.h5").samples
     assert np.nanmax(np.abs(samples["angle_deg"] - samples["reference_deg"])[100:]) < 12
+
+
+def test_the_shipped_curve_is_a_twins_own_by_name(folder: Path) -> None:
+    Path("own.yaml").write_text("curve: tw3_slw10\n")
+    own, shipped = read_twin(folder / "own.yaml"), read_twin(None)
+    assert own.own_curve and not shipped.own_curve and own.design == shipped.design
+    assert np.array_equal(own.curve.angle_deg, shipped.curve.angle_deg)
 
 
 @pytest.mark.parametrize("protocol", ["loop.yaml", "linear_ramp"])
