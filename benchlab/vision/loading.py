@@ -124,11 +124,22 @@ def angle_at(wanted_MPa: float, tolerance_MPa: float, trace: Trace, cycle: Cycle
 
 
 def rising_curve(at_MPa: FloatArray, tolerance_MPa: float, trace: Trace, cycles: tuple[Cycle, ...]) -> FloatArray:
-    """(P,) the angle at each pressure of `at_MPa` (P,), as `angle_at` has it, mean over the cycles; NaN where none has it."""
-    rows = [[angle_at(p, tolerance_MPa, trace, cycle).angle for p in at_MPa.tolist()] for cycle in cycles]
+    """(P,) the angle at each pressure of `at_MPa` (P,) on the rise, mean over the cycles; NaN where none has it.
+
+    As `angle_at` has it, but where the pressure is held, of the first frames of the hold alone: an actuator that creeps while it is held
+    goes up at one pressure, and a curve with the mean of that would turn up at its end.
+    """
+    rows = [
+        [_on_the_rise(angle_at(p, tolerance_MPa, trace, cycle), trace) for p in at_MPa.tolist()] for cycle in cycles
+    ]
     found = np.array(rows, dtype=float).reshape(len(cycles), len(at_MPa))
     count = np.isfinite(found).sum(axis=0)
     return np.where(count > 0, np.nansum(found, axis=0) / np.maximum(count, 1), np.nan)
+
+
+def _on_the_rise(reading: Reading, trace: Trace) -> float:
+    frames = list(reading.frames[:HOLD_FRAMES])
+    return float(trace.angle[frames].mean()) if reading.method == "held" else reading.angle
 
 
 def _last_lowest(pressure: FloatArray, first: int, stop: int) -> int:

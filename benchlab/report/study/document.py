@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import shlex
+from dataclasses import replace
 from pathlib import Path
 
 from benchlab.errors import counted
-from benchlab.report.document import Block, Cell, Column, Document, Items, Section, Table, Words, cut
+from benchlab.report.document import Block, Cell, Column, Document, Items, Pictures, Section, Table, Words, cut
 from benchlab.report.rounding import words
 from benchlab.report.study.differences import (
     all_warnings,
@@ -15,7 +16,8 @@ from benchlab.report.study.differences import (
     power_blocks,
     tests_table,
 )
-from benchlab.report.study.force import force_section
+from benchlab.report.study.force import FORCE, force_section
+from benchlab.report.study.origins import origins_mark, origins_words
 from benchlab.report.study.pictures import bands_blocks, bars_blocks, consistency_blocks, intervals_blocks
 from benchlab.report.study.published import published_section
 from benchlab.report.study.repeatability import components_blocks, consistency_table, consistency_words
@@ -24,12 +26,14 @@ from benchlab.report.study.tables import designs_table, samples_table
 from benchlab.report.study.verdict import verdict_section
 
 MOST_LISTED = 100
+PROVENANCE = "Provenance"
 
 
 def study_document(report: StudyReport) -> Document:
     """The whole report. The study's notes stand at its top, so that what is drawn or simulated is known before it is read."""
     tests: tuple[Block, ...] = (tests_table(report),) if found_sets(report) else ()
     pairs: tuple[Block, ...] = (pairs_table(report),) if found_sets(report) else ()
+    mark, words = origins_mark(report.values), origins_words(report.values)
     sections = [
         verdict_section(report),
         Section("The designs", (designs_table(report), *bars_blocks(report))),
@@ -43,13 +47,26 @@ def study_document(report: StudyReport) -> Document:
         _provenance(report),
     ]
     return Document(
-        title=cut(report.values.title, 140),
-        statement=cut(report.values.notes.strip(), 600),
+        title=cut(f"{mark.capitalize()}: {report.values.title}" if mark else report.values.title, 140),
+        statement=" ".join(filter(None, (words, cut(report.values.notes.strip(), 600)))),
         facts=_facts(report),
-        sections=tuple(section for section in sections if section.blocks),
+        sections=tuple(_marked(section, mark) for section in sections if section.blocks),
         foot=f"Written by benchlab {report.provenance['versions']['benchlab']}. This page asks nothing of the network.",
         data=(consistency_table(report),) if report.whole.found else (),
     )
+
+
+def _marked(section: Section, mark: str) -> Section:
+    """The section with a mark before the captions of what is not measured; those of force and of the files read have none."""
+    if not mark or section.title in (FORCE, PROVENANCE):
+        return section
+    blocks = (
+        replace(block, caption=f"{mark.capitalize()}. {block.caption}")
+        if isinstance(block, Pictures | Table)
+        else block
+        for block in section.blocks
+    )
+    return replace(section, blocks=tuple(blocks))
 
 
 def _facts(report: StudyReport) -> tuple[str, ...]:
@@ -110,6 +127,6 @@ def _provenance(report: StudyReport) -> Section:
     columns = (Column("file", "file", False), Column("sha256", "SHA-256", False))
     note = "The whole sums stand in the CSV file and in report.json."
     return Section(
-        "Provenance",
+        PROVENANCE,
         (Items(tuple((what, cut(text, 400)) for what, text in rows)), Table("inputs", "What was read.", columns, inputs, note)),
     )  # fmt: skip

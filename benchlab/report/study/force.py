@@ -20,11 +20,14 @@ from benchlab.stats.wording import p_equals
 
 MOST_PANELS = 12
 
+FORCE = "Blocked force"
+"""Title of the section."""
+
 
 def force_section(report: StudyReport) -> Section | None:
     """None where no design of the study has a blocked force."""
     known = [(design, design.force) for design in report.values.designs if design.force is not None]
-    return Section("Blocked force", tuple(_blocks(known))) if known else None
+    return Section(FORCE, tuple(_blocks(known))) if known else None
 
 
 def _blocks(known: list[tuple[DesignValues, BlockedForce]]) -> Iterator[Block]:

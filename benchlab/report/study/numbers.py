@@ -10,6 +10,7 @@ from benchlab.force.curve_json import blocked_force_json
 from benchlab.io.nexus import plain
 from benchlab.io.study_values import DesignValues, Missing, SampleValues
 from benchlab.report.study.differences import all_warnings
+from benchlab.report.study.origins import origins_of
 from benchlab.report.study.report import ComparedSet, StudyReport, error_of, mean_of, scatter_of, sd_of, simulated_of
 from benchlab.report.study.verdict import verdict_words
 
@@ -26,6 +27,7 @@ def report_numbers(report: StudyReport) -> dict[str, Any]:
             "notes": values.notes,
             "pressure_MPa": values.pressure_MPa,
             "hold_tolerance_MPa": values.hold_tolerance_MPa,
+            "origins": {origin or "measured": count for origin, count in origins_of(values).items()},
             "verdict": [f"{block.head} {block.text}".strip() for block in verdict_words(report)],
             "scatter": None if scatter is None else {**asdict(scatter), "limit_deg": scatter.limit_deg},
             "designs": [_design(report, design) for design in values.designs],
@@ -74,6 +76,7 @@ def _sample(sample: SampleValues) -> dict[str, Any]:
                 "file": recording.file,
                 "status": recording.status,
                 "left_out": recording.left_out or None,
+                "origin": recording.origin or None,
                 "warnings": recording.warnings,
                 "cycles": [asdict(cycle) for cycle in recording.cycles],
                 "curve_deg": recording.curve_deg,

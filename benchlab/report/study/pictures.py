@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from benchlab.io.study_values import DesignValues
-from benchlab.report.document import Block, Pictures, Words, cut
+from benchlab.report.document import Block, Panel, Pictures, Words, cut
 from benchlab.report.study.bars_figure import MOST_BRACKETED, Bar, draw_bars
 from benchlab.report.study.consistency_figure import MOST_CELLS, MOST_DESIGNS, draw_consistency, what_of
 from benchlab.report.study.figures import (
@@ -21,11 +22,15 @@ from benchlab.report.study.figures import (
     draw_angle_band,
     draw_intervals,
 )
+from benchlab.report.study.origins import origins_mark, write_mark
 from benchlab.report.study.report import ComparedSet, StudyReport, found_sets, mean_of, name_of, sd_of, simulated_of
 from benchlab.report.svg import panel_of
 from benchlab.stats.comparison import Comparison
 from benchlab.stats.pairs import Pair
 from benchlab.stats.wording import STARS_LEGEND, p_equals, stars
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 MOST_BANDS = 24
 
@@ -47,7 +52,7 @@ def bars_blocks(report: StudyReport) -> Iterator[Block]:
             sizes.append(len(bars))
             brackets = brackets_of(one.found, [bar.name for bar in bars])
             figure = draw_bars(bars, brackets, label, one.chosen.title, bar_in)
-            panels.append(panel_of(figure, f"bars_{name}", f"Bars of mean angle: {name_of(one)}"))
+            panels.append(_panel(report, figure, f"bars_{name}", f"Bars of mean angle: {name_of(one)}"))
     if panels:
         yield Pictures(tuple(panels), _about_bars(report, sizes))
     else:
@@ -95,7 +100,7 @@ def intervals_blocks(report: StudyReport) -> Iterator[Block]:
         if len(rows) > MOST_ROWS:
             cut_off.append(f"{name_of(one)}: the first {MOST_ROWS} of {len(rows)} pairs are drawn.")
         figure = draw_intervals(rows, "difference of mean θ (°)", one.found.confidence, one.chosen.title, width)
-        panels.append(panel_of(figure, f"intervals_{name}", f"Intervals of differences: {name_of(one)}"))
+        panels.append(_panel(report, figure, f"intervals_{name}", f"Intervals of differences: {name_of(one)}"))
     if panels:
         caption = (
             "Differences of mean angle with simultaneous intervals for all pairs of the set: Tukey’s with one variance for all designs, "
@@ -126,8 +131,11 @@ def bands_blocks(report: StudyReport) -> Iterator[Block]:
     limits = (float(min(smallest) - room), float(max(largest) + room))
     width = THIRD_IN if len(drawn) > 2 else HALF_IN
     panels = [
-        panel_of(
-            draw_angle_band(band, limits, width), f"curve_{name}", f"Angle against pressure of {cut(band.name, 40)}"
+        _panel(
+            report,
+            draw_angle_band(band, limits, width),
+            f"curve_{name}",
+            f"Angle against pressure of {cut(band.name, 40)}",
         )
         for band, name in zip(drawn, file_names([band.name for band in drawn]))
     ]
@@ -137,7 +145,8 @@ def bands_blocks(report: StudyReport) -> Iterator[Block]:
     dashed = " Dashed: simulated." if any(band.simulated is not None for band in drawn) else ""
     yield Pictures(
         tuple(panels),
-        "Bending angle against pressure as it rises. Line and band: mean of the samples ± 1 standard deviation between them. Grey: "
+        "Bending angle against pressure as it rises; where it is held, as the hold begins: creep in a hold is in the mean that "
+        "is compared, not in the curve. Line and band: mean of the samples ± 1 standard deviation between them. Grey: "
         f"single samples, each the mean of its cycles.{dashed}{off}",
     )
 
@@ -165,7 +174,7 @@ def consistency_blocks(report: StudyReport) -> Iterator[Block]:
         return
     what = what_of(cells)
     panels = [
-        panel_of(draw_consistency(cells, statistic), f"consistency_{statistic}", f"{statistic} of each {what}")
+        _panel(report, draw_consistency(cells, statistic), f"consistency_{statistic}", f"{statistic} of each {what}")
         for statistic in ("h", "k")
         if any(getattr(cell, statistic) is not None for cell in cells)
     ]
@@ -193,6 +202,13 @@ def file_names(texts: Sequence[str]) -> list[str]:
         taken.add(name)
         found.append(name)
     return found
+
+
+def _panel(report: StudyReport, figure: Figure, name: str, words: str) -> Panel:
+    """A panel that says where its numbers are from, if they were not measured."""
+    mark = origins_mark(report.values)
+    write_mark(figure, mark)
+    return panel_of(figure, name, f"{words} ({mark})" if mark else words)
 
 
 def _named(compared: Sequence[ComparedSet]) -> Iterator[tuple[ComparedSet, str]]:

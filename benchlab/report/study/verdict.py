@@ -9,6 +9,7 @@ from benchlab.errors import counted
 from benchlab.force.curve import BlockedForce
 from benchlab.report.document import Section, Tile, Tiles, Words, cut
 from benchlab.report.rounding import decimals_of, number
+from benchlab.report.study.origins import origins_mark, origins_words
 from benchlab.report.study.published import paper_words
 from benchlab.report.study.report import (
     ComparedSet,
@@ -36,12 +37,14 @@ def verdict_section(report: StudyReport) -> Section:
 
 
 def verdict_words(report: StudyReport) -> list[Words]:
-    """The verdict in words alone."""
-    found = [Words(_of_set(one), "lead", f"{name_of(one)}.") for one in report.compared]
+    """The verdict in words alone; first of all, what was not measured."""
+    words, mark = origins_words(report.values), origins_mark(report.values)
+    found = [Words(words, "warning")] if words else []
+    found += [Words(_of_set(one), "lead", f"{name_of(one)}{', ' * bool(mark)}{mark}.") for one in report.compared]
     others = (
         ("Repeatability.", _repeatability(report)),
         ("Simulation.", _simulation(report)),
-        ("The paper.", paper_words(report)),
+        ("The paper, which measured." if mark else "The paper.", paper_words(report)),
     )
     found += [Words(text, "lead", head) for head, text in others if text]
     return found + [Words(text, "warning") for text in _missing(report)]
@@ -54,7 +57,8 @@ def _tiles(report: StudyReport) -> Iterator[Tile]:
         ends = dict.fromkeys((min(means), max(means)))
         value = "–".join(number(mean, places).text for mean, _ in ends)
         names = " to ".join(cut(name, 24) for _, name in ends)
-        yield Tile(f"{value}°", f"mean angle at {report.values.pressure_MPa:g} MPa", names)
+        mark = origins_mark(report.values)
+        yield Tile(f"{value}°", f"mean angle at {report.values.pressure_MPa:g} MPa{', ' * bool(mark)}{mark}", names)
     if own is not None:
         name = f"SD between samples of a design{', means of cycles' * _has_cycles(report)}"
         limit = f"{_rests_on(own, report)}; repeatability limit r, 2.8 SD: {number(own.limit_deg, places).text}°{_doubt(own)}"

@@ -126,13 +126,26 @@ def test_few_stills_at_rising_pressures_are_interpolated_however_far_apart() -> 
     assert reading.angle == pytest.approx((low + high) / 2)
 
 
+def test_the_curve_does_not_turn_up_where_a_hold_creeps() -> None:
+    """3° of creep in a hold of 60 frames: the value has its mean, the curve ends where the hold begins."""
+    pressure = trapezes([0.35])
+    held = pressure >= 0.35 - 1e-9
+    angle = response(pressure) + np.where(held, np.linspace(0, 3, held.sum())[np.cumsum(held) - 1], 0)
+    trace = trace_of(pressure, angle)
+    cycles = find_cycles(trace.pressure_MPa, TARGET)
+    curve = rising_curve(np.linspace(0, TARGET, 36), TOLERANCE, trace, cycles)
+    (top,) = response(np.array([0.35]))
+    assert angle_at(TARGET, TOLERANCE, trace, cycles[0]).angle == pytest.approx(top + 1.5, abs=0.2)
+    assert curve[-1] == pytest.approx(top, abs=3 * 3 / held.sum())
+
+
 def test_the_curve_meets_the_response_and_ends_with_the_value() -> None:
     grid = np.linspace(0, TARGET, 36)
     trace = trace_of(trapezes([0.35, 0.31]))
     cycles = find_cycles(trace.pressure_MPa, TARGET)
     curve = rising_curve(grid, TOLERANCE, trace, cycles)
     assert curve == pytest.approx(response(grid), abs=0.05)
-    assert curve[-1] == angle_at(TARGET, TOLERANCE, trace, cycles[0]).angle
+    assert curve[-1] == pytest.approx(angle_at(TARGET, TOLERANCE, trace, cycles[0]).angle, abs=1e-9)
     assert np.isnan(rising_curve(np.array([0.4]), TOLERANCE, trace, cycles)).all()
     late = trace_of(trapezes([0.35])[25:])
     late_curve = rising_curve(grid, TOLERANCE, late, find_cycles(late.pressure_MPa, TARGET))
