@@ -11,7 +11,10 @@ import click
 from benchlab.cli.bench_options import bench_option, calibration_option
 from benchlab.cli.design_options import Design
 from benchlab.cli.options import Finite
+from benchlab.cli.progress import progress
 from benchlab.errors import counted, printable
+
+BY_HAND = "close the supply and open the relief valve by hand"
 
 
 @click.command(short_help="Run a pressure protocol on a bench or its twin.")
@@ -93,7 +96,6 @@ def run(protocol: str, dry_run: bool, quiet: bool, as_json: bool, **options: Any
     else:
         _tell_before(prepared)
         found, bug = _drive(prepared, quiet)
-        _tell(found, prepared.warnings)
         if bug is not None:
             raise bug
     if as_json:
@@ -102,19 +104,25 @@ def run(protocol: str, dry_run: bool, quiet: bool, as_json: bool, **options: Any
 
 
 def _drive(prepared: Any, quiet: bool) -> tuple[dict[str, Any], BaseException | None]:
-    """What the run came to, and the bug that ended it, if one did."""
+    """What the run came to, which is told, and the bug that ended it, if one did.
+
+    Signals are ours from the beginning to the last word, so that no second Ctrl-C keeps the outcome from being told."""
     from benchlab.cli.run_keys import have_keys, keys_to
     from benchlab.cli.run_screen import Screen, shown
-    from benchlab.runner.stop import Stop
+    from benchlab.runner.stop import Stop, signals_to
     from benchlab.workflows.run import drive
     from benchlab.workflows.run_files import written
 
     stop, keys = Stop(pausable=not prepared.fast), have_keys() and not quiet
     screen = Screen(prepared.plan, stop, keys)
-    with keys_to(stop, keys), shown(screen, f"{prepared.plan.title} on {prepared.spec}", quiet):
-        driven = drive(prepared, stop, None if quiet else screen.on_tick)
-    end = driven.end
-    return written(prepared, driven), end.cause.error if end.reason == "bug" else None
+    with signals_to(stop):
+        with keys_to(stop, keys), shown(screen, f"{prepared.plan.title} on {prepared.spec}", quiet):
+            driven = drive(prepared, stop, None if quiet else screen.on_tick)
+        stop.write()
+        with progress("drawing the film, frames", quiet or not prepared.settings.video) as reporter:
+            found = written(prepared, driven, stop, reporter)
+        _tell(found, prepared.warnings)
+    return found, driven.end.cause.error if driven.end.reason == "bug" else None
 
 
 def _tell_plan(found: dict[str, Any]) -> None:
@@ -125,7 +133,7 @@ def _tell_plan(found: dict[str, Any]) -> None:
         f"{plan['title']}: {plan['duration_s']:g} s, {plan['ticks']} ticks at {plan['rate_Hz']:g} Hz, {counted(plan['steps'], 'step')}",
         f"  asks for up to {peak or 0:.4g} MPa, in ramps of up to {slew or 0:.3g} MPa/s{', and for angles' * plan['closed_loop']}",
         f"  bench {found['bench_spec']}: {bench['name']}, up to {bench['ceiling_MPa']:.4g} MPa, {bench['ceiling_V']:.3f} V",
-        f"  watched: {', '.join(found['guards'])}",
+        f"  watched: {', '.join(found['guards'])}{', empty at the end' if 'empty_s' not in found['guards_off'] else ''}",
         *([f"  control: {found['control']['words']}"] if found["control"] else []),
         *(f"  warning: {warning}" for warning in found["warnings"]),
         *(f"  would write {path}" for path in found["would_write"]),
@@ -159,8 +167,12 @@ def _tell(found: dict[str, Any], known: tuple[str, ...]) -> None:
 
 
 def _vented(found: dict[str, Any]) -> str:
-    if found["vented"]:
-        return "vented"
-    return (
-        f"NOT CONFIRMED VENTED ({printable(found['vent_words'])}): close the supply and open the relief valve by hand"
-    )
+    """What the device said of its vent, and what was seen after it."""
+    seen = printable(found["empty_words"])
+    if not found["vented"]:
+        return f"NOT CONFIRMED VENTED ({printable(found['vent_words'])}): {BY_HAND}"
+    if found["empty"] is None:
+        return f"vented, as the device says; whether it is empty is not known ({seen})"
+    if found["empty"]:
+        return f"vented and seen empty ({seen})"
+    return f"the device says that it vented, and it is NOT EMPTY ({seen}). PRESSURE MAY BE LEFT INSIDE: {BY_HAND}"

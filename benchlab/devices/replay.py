@@ -20,14 +20,20 @@ class Replay:
 
     samples: of the run, with the fields of a journal. about: what its device said of itself. triggers: ticks at which it was asked to
     trigger the camera; None compares no triggers. The time of a command is not compared, as it was real. Ticks that were held in a pause
-    are passed over. A tick that the recording lacks, and one after its last, is a difference too.
+    are passed over. A tick that the recording lacks, and one after its last, is a difference too. watched: how many of the last samples
+    are of the vented bench; after a run that went as far as its recording they are given again.
     """
 
     kind = "replay"
 
     def __init__(
-        self, samples: NDArray[np.void], about: Mapping[str, typing.Any], triggers: Collection[int] | None = None
+        self,
+        samples: NDArray[np.void],
+        about: Mapping[str, typing.Any],
+        triggers: Collection[int] | None = None,
+        watched: int = 0,
     ) -> None:
+        samples, self._watched = samples[: len(samples) - watched], list(samples[len(samples) - watched :])
         self._about, self._triggers = dict(about), triggers
         ticks, first = np.unique(samples["tick"], return_index=True)
         self._rows = dict(zip(ticks.tolist(), samples[first]))
@@ -44,6 +50,8 @@ class Replay:
         """The reading of the next tick. BenchError where what is asked differs from what was, with tick, field and both values."""
         if not self._armed and pressure_MPa > 0:
             raise BenchError(f"{pressure_MPa:g} MPa asked of a disarmed bench", hint="arm it first")
+        if not self._armed and self._next:
+            return self._after_vent()
         tick = self._next
         row = self._rows.get(tick)
         if row is None:
@@ -57,14 +65,15 @@ class Replay:
         if self._triggers is not None:
             self._check(tick, "trigger", tick in self._triggers, trigger)
         self._next += 1
-        return Reading(
-            float(row["pressure_MPa"]),
-            float(row["flex_V"]),
-            int(row["code"]),
-            float(row["device_time_s"]),
-            Status(int(row["status"])),
-            float(row["monitor_V"]),
-        )
+        return reading_of(row)
+
+    def _after_vent(self) -> Reading:
+        """The next reading of the vented bench."""
+        if self._next <= self._last:
+            raise BenchError("the recording goes on, and nothing is known of a vent here", where="replay")
+        if not self._watched:
+            raise BenchError("the recording ends here", where="replay")
+        return reading_of(self._watched.pop(0))
 
     def vent(self) -> None:
         self._armed = False
@@ -87,3 +96,15 @@ class Replay:
             raise BenchError(
                 what, where="replay", hint="a replay takes the protocol, the rate and the gains of its run"
             )
+
+
+def reading_of(row: np.void) -> Reading:
+    """What a bench answered, from a sample of its journal."""
+    return Reading(
+        float(row["pressure_MPa"]),
+        float(row["flex_V"]),
+        int(row["code"]),
+        float(row["device_time_s"]),
+        Status(int(row["status"])),
+        float(row["monitor_V"]),
+    )

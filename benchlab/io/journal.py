@@ -63,8 +63,8 @@ UNITS = {
 }
 """Unit of each field of SAMPLE."""
 
-KINDS = ("mark", "trigger", "fault", "warning", "pause", "resume", "stop")
-"""Kinds of events; a stop, with its reason, is the last."""
+KINDS = ("mark", "trigger", "fault", "warning", "pause", "resume", "vent", "stop")
+"""Kinds of events; a stop, with its reason, is the last. Samples after a vent are of the disarmed bench, watched until it is empty."""
 
 SYNC_S = 1.0
 """Seconds between two times that the disk is asked to have everything."""
@@ -135,6 +135,7 @@ class JournalWriter:
         self._thread.join()
         try:
             os.fsync(self._file)
+            self._check_there()
         except OSError as error:
             self._trouble = self._trouble or error
         finally:
@@ -157,18 +158,29 @@ class JournalWriter:
         sync = getattr(os, "fdatasync", os.fsync)
         synced = 0
         while not self._stop.wait(SYNC_S):
-            if synced == self._number:
-                continue
-            synced = self._number
             try:
-                sync(self._file)
+                if synced != self._number:
+                    synced = self._number
+                    sync(self._file)
+                self._check_there()
             except OSError as error:
                 self._trouble = error
+
+    def _check_there(self) -> None:
+        """FileNotFoundError where our file is not at its place any more: removed, moved, or another in its stead."""
+        here, there = os.fstat(self._file), self.path.stat()
+        if here.st_nlink == 0 or (here.st_dev, here.st_ino) != (there.st_dev, there.st_ino):
+            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
 
     def _refused(self, error: OSError) -> InputError:
         hint = "what was written before is kept: see `benchlab recover`"
         if error.errno == errno.ENOSPC:
             hint = f"free some space; {hint}"
+        if error.errno == errno.ENOENT:
+            what = "the journal is not at its place any more: it, or its folder, was removed or moved"
+            return InputError(
+                what, file=self.path, hint="look where it went; leave the folder alone while a run goes on"
+            )
         return InputError(f"the journal could not be written: {reason_of(error)}", file=self.path, hint=hint)
 
 
@@ -194,6 +206,12 @@ class Journal:
     def stop(self) -> dict[str, Any] | None:
         """The stop record: reason, words, vented. None where the run ended without one."""
         return next((event for event in reversed(self.events) if event["kind"] == "stop"), None)
+
+    @property
+    def driven(self) -> NDArray[np.void]:
+        """The samples of the plan: those up to its vent. The rest is of the vented bench, which was watched until it was seen empty."""
+        vent = next((event for event in self.events if event["kind"] == "vent"), None)
+        return self.samples if vent is None else self.samples[: int(vent["after_samples"])]
 
     @property
     def losses_told(self) -> list[str]:

@@ -60,7 +60,7 @@ class Loop:
         self.late_s = array("d")
         self.paused_s = self.shift_s = 0.0
         self._command_MPa, self._angle_deg = 0.0, NAN
-        self._step, self._controlling = 0, False
+        self._index, self._step, self._controlling = 0, 0, False
         self._sample: tuple[Any, ...] | None = None
         self._faults: list[Fault] = []
 
@@ -91,6 +91,18 @@ class Loop:
         while self._faults:
             fault = self._faults.pop(0)
             self.journal.event("fault", cause=fault.cause, count=fault.count, time_s=self.clock.now_s())
+
+    def watch_until(self, time_s: float) -> bool:
+        """Wait for a look at the vented bench; whether it is still wanted."""
+        clock, stop = self.clock, self.stop
+        while (now := clock.now_s()) < time_s and not stop.enough:
+            clock.wait_until(min(time_s, now + LOOK_S))
+        return not stop.enough
+
+    def look(self) -> Tick:
+        """Ask the vented bench for 0 MPa; what it answers waits for `write`. It is a tick after the plan: it has the last one's number."""
+        self._step = len(self.plan.steps)
+        return self._ask(self._index, self.clock.now_s(), 0.0, NAN, held=True)
 
     def ask_faults(self) -> int:
         """Take what the device has to tell; how many faults."""
@@ -158,15 +170,10 @@ class Loop:
         """Check, ask, guard, write. Where a guard stops the run, what was measured waits for `write`, as venting comes first."""
         if command_MPa > self.top_MPa:
             raise LimitError(f"{command_MPa:g} MPa at tick {index} is above the limit, {self.top_MPa:.4g} MPa")
-        code = self.bench.code(command_MPa)
-        now = self.clock.now_s()
-        late = max(0.0, now - deadline_s)
+        late = max(0.0, self.clock.now_s() - deadline_s)
         if late > self.most_late_s:
             return too_late(index, late, self.most_late_s)
-        reading = self.device.exchange(now, command_MPa, trigger)
-        answer_s = self.clock.now_s() - now
-        tick = self._answered(index, now, late, command_MPa, reading, reference_deg, held)
-        self._sample = sample_of(tick, self._step, answer_s, self.bench.volts(code))
+        tick = self._ask(index, deadline_s, command_MPa, reference_deg, trigger, held)
         for guard in self.guards:
             if cause := guard.check(tick):
                 return cause
@@ -174,6 +181,24 @@ class Loop:
         if self.on_tick is not None:
             self.on_tick(tick)
         return None
+
+    def _ask(
+        self,
+        index: int,
+        deadline_s: float,
+        command_MPa: float,
+        reference_deg: float,
+        trigger: bool = False,
+        held: bool = False,
+    ) -> Tick:
+        """One exchange with the device; what it measured waits for `write`."""
+        code = self.bench.code(command_MPa)
+        self._index, now = index, self.clock.now_s()
+        reading = self.device.exchange(now, command_MPa, trigger)
+        answer_s, late = self.clock.now_s() - now, max(0.0, now - deadline_s)
+        tick = self._answered(index, now, late, command_MPa, reading, reference_deg, held)
+        self._sample = sample_of(tick, self._step, answer_s, self.bench.volts(code))
+        return tick
 
     def _answered(
         self,

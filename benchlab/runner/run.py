@@ -1,7 +1,8 @@
 """Executes a plan on a bench, tick by tick at absolute deadlines, in the caller's thread.
 
 One tick: command from plan or controller -> limit -> device -> guards -> journal. A tick that is late is executed late, with its lateness
-in its sample; none is skipped. Whatever ends a run, the bench is vented first, and then it is written why.
+in its sample; none is skipped. Whatever ends a run, the bench is vented first, then it is watched until it is seen empty, and then it is
+written why.
 """
 
 from __future__ import annotations
@@ -17,12 +18,14 @@ from benchlab.control.controller import Controller
 from benchlab.devices.interface import Device, LostError
 from benchlab.protocol.plan import Plan
 from benchlab.runner.clock import Clock
-from benchlab.runner.end import RunEnd, cause_of
+from benchlab.runner.empty import Sight
+from benchlab.runner.end import Emptied, RunEnd, cause_of, judged
 from benchlab.runner.guards.choice import Guard, guards_of
 from benchlab.runner.guards.limits import Limits
 from benchlab.runner.loop import Journal, Loop
 from benchlab.runner.stop import Stop
 from benchlab.runner.tick import Tick
+from benchlab.runner.watch import watch
 
 VENT_TRIES = 3
 
@@ -40,7 +43,7 @@ def execute(
     limits: Limits | None = None,
     pause_limit_s: float = 10.0,
 ) -> RunEnd:
-    """Arm the device, run the plan, vent. Never raises for what goes wrong on the way: the RunEnd says it, bugs included.
+    """Arm the device, run the plan, vent, watch it empty. Never raises for what goes wrong on the way: the RunEnd says it, bugs included.
 
     controller: decides where the plan leaves the pressure open. guards: see `guards_of`, which is the default. on_tick: is called after
     each answer, in this thread, and must be quick. stop: wishes from outside. The device is left vented and open.
@@ -48,7 +51,10 @@ def execute(
     stop = stop or Stop()
     limits = limits or Limits()
     guards = guards_of(bench, plan.rate_Hz, limits) if guards is None else guards
-    loop = Loop(plan, device, bench, journal, clock, controller, guards, on_tick, stop, limits.late_s, pause_limit_s)
+    sight = Sight(bench)
+    loop = Loop(
+        plan, device, bench, journal, clock, controller, [sight, *guards], on_tick, stop, limits.late_s, pause_limit_s
+    )
     try:
         device.arm()
         clock.start()
@@ -57,19 +63,26 @@ def execute(
         stop.close()
         cause = cause_of(error)
     stop.close()
+    time_s = clock.now_s()
     vented, vent_words = vent(device)
+    trouble = _vent_written(loop, journal, clock.now_s(), vented, vent_words)
+    emptied = Emptied(None, "nobody confirmed the vent")
+    if vented:
+        emptied = watch(loop, sight, limits.empty_s, cause.sensor, written=not trouble)
     end = RunEnd(
-        cause,
+        judged(cause, emptied),
         vented,
         vent_words,
+        emptied=emptied,
         ticks=loop.ticks,
         ticks_planned=len(plan.time_s),
-        time_s=clock.now_s(),
+        time_s=time_s,
         paused_s=loop.paused_s,
         faults=loop.faults,
         late_s=np.array(loop.late_s, float),
+        trouble=trouble,
     )
-    return _written(end, loop, journal)
+    return _end_written(end, loop, journal)
 
 
 def vent(device: Device) -> tuple[bool, str]:
@@ -87,8 +100,20 @@ def vent(device: Device) -> tuple[bool, str]:
     return False, words
 
 
-def _written(end: RunEnd, loop: Loop, journal: Journal) -> RunEnd:
-    """The last sample and faults, if the end came before they were written, and the stop record."""
+def _vent_written(loop: Loop, journal: Journal, time_s: float, vented: bool, words: str) -> str:
+    """The last sample and faults, if the end came before they were written, and that it was vented. What went wrong, in words."""
+    with suppress(Exception):
+        loop.ask_faults()
+    try:
+        loop.write()
+        journal.event("vent", time_s=time_s, confirmed=vented, text=words)
+    except Exception as error:
+        return cause_of(error).words
+    return ""
+
+
+def _end_written(end: RunEnd, loop: Loop, journal: Journal) -> RunEnd:
+    """The last faults, and the stop record."""
     with suppress(Exception):
         loop.ask_faults()
     try:
@@ -96,5 +121,5 @@ def _written(end: RunEnd, loop: Loop, journal: Journal) -> RunEnd:
         end = replace(end, faults=loop.faults)
         journal.event("stop", **end.record())
     except Exception as error:
-        return replace(end, trouble=cause_of(error).words)
+        return end.with_trouble(cause_of(error).words)
     return end

@@ -28,17 +28,23 @@ class Stop:
     Signals only set it: nothing is raised into the loop, so that no signal comes between it and its vent. Only where the loop has
     not looked for longer than PATIENCE_S, a second signal raises KeyboardInterrupt, once. pausable: not so in virtual time, where any
     pause is over at once.
+
+    After the loop a wish says that it is enough: of watching the bench, which was vented before, or of drawing pictures. While files are
+    written, one more wish after PATIENCE_S raises KeyboardInterrupt.
     """
 
     def __init__(self, pausable: bool = True) -> None:
         self.cause: Cause | None = None
         self.pausable, self.paused = pausable, False
+        self.over = self.enough = self.writing = False
         self._asked_at = 0.0
         self._seen = False
 
     def ask(self, cause: Cause) -> None:
-        """End the run, vented, for this cause."""
-        if self.cause is None:
+        """End the run, vented, for this cause; or, where it has ended, what comes after it."""
+        if self.over:
+            self._asked_at, self.enough = time.monotonic(), True
+        elif self.cause is None:
             self._asked_at, self.cause = time.monotonic(), cause
 
     def toggle_pause(self) -> None:
@@ -51,18 +57,26 @@ class Stop:
         return self.cause
 
     def close(self) -> None:
-        """From here on no signal raises anything: the loop is over."""
-        self._seen = True
+        """From here on no signal raises anything: the loop is over, and the bench is vented."""
+        self._seen = self.over = True
+
+    def write(self) -> None:
+        """From here on the bench is closed, and files are written."""
+        self._seen = self.over = self.writing = True
 
     def on_signal(self, number: int, frame: Any) -> None:
         name = signal.Signals(number).name
         if name not in SIGNALS:
             self.toggle_pause()
-        elif self.cause is not None and not self._seen and time.monotonic() - self._asked_at > PATIENCE_S:
+        elif self._waits_in_vain() and time.monotonic() - self._asked_at > PATIENCE_S:
             self._seen = True
             raise KeyboardInterrupt
         else:
             self.ask(SIGNALS[name])
+
+    def _waits_in_vain(self) -> bool:
+        """Whether something was wished for and has not been heard."""
+        return self.enough if self.writing else self.cause is not None and not self._seen
 
 
 @contextmanager

@@ -11,7 +11,7 @@ from benchlab.devices.interface import Reading
 class Tick:
     """index: of the plan. time_s: of the command, of the run. late_s: after its deadline. angle_deg: NaN where the flex sensor is not
     calibrated. faults: that the device told of since the tick before; fault: the cause of the last. held: in a pause, in which the
-    plan stands still."""
+    plan stands still, or after the vent at its end."""
 
     index: int
     time_s: float

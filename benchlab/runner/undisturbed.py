@@ -26,15 +26,22 @@ def undisturbed(real_time: bool) -> Iterator[bool]:
         yield first
     finally:
         if first:
-            with suppress(OSError):
-                os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+            _go_back()
         gc.unfreeze()
+
+
+def _go_back() -> None:
+    """As others again. Who has no right to lay down SCHED_RESET_ON_FORK (sched(7): CAP_SYS_NICE) keeps it, which then changes nothing."""
+    for policy in (os.SCHED_OTHER, os.SCHED_OTHER | os.SCHED_RESET_ON_FORK):
+        with suppress(OSError):
+            os.sched_setscheduler(0, policy, os.sched_param(0))
+            return
 
 
 def _go_first() -> bool:
     """SCHED_FIFO for this thread, not for those that it starts."""
     try:
-        if os.sched_getscheduler(0) != os.SCHED_OTHER:
+        if os.sched_getscheduler(0) & ~os.SCHED_RESET_ON_FORK != os.SCHED_OTHER:
             return False  # somebody has decided otherwise
         os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(PRIORITY))
     except (AttributeError, OSError):

@@ -141,8 +141,7 @@ def _replay(path: Path) -> Device:
     journal = read_journal(path)
     if not len(journal.samples):
         raise InputError("holds no sample", file=path, hint="replay a journal of a run that began")
-    vent = next((event for event in journal.events if event["kind"] == "vent"), None)
-    watched = 0 if vent is None else len(journal.samples) - int(vent["after_samples"])
+    watched = len(journal.samples) - len(journal.driven)
     return Replay(journal.samples, journal.header.get("device", {}), trigger_ticks(journal), watched)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from benchlab.bench import LimitError
 from benchlab.devices.interface import Device
-from benchlab.errors import BenchError, InputError
+from benchlab.errors import InputError
 from benchlab.io.files import reason_of
 from benchlab.io.journal import JournalWriter
 from benchlab.runner.clock import Clock, RealClock, VirtualClock
@@ -23,7 +23,6 @@ from benchlab.runner.stop import Stop, signals_to
 from benchlab.runner.tick import Tick
 from benchlab.runner.undisturbed import undisturbed
 from benchlab.workflows.bench_supply import check_supply
-from benchlab.workflows.bench_vent import vent_bench
 from benchlab.workflows.bench_zero import check_zero
 from benchlab.workflows.open_bench import open_bench
 from benchlab.workflows.run_header import header_of
@@ -32,14 +31,13 @@ from benchlab.workflows.run_prepare import Prepared
 
 @dataclass(frozen=True)
 class Driven:
-    """A run that is over: its end, its journal, and the twin's truth if it ran on one. left: what is known to be wrong with the bench
-    after its vent, in words; empty where nothing is. went_first: whether the loop went before other programs."""
+    """A run that is over: its end, its journal, and the twin's truth if it ran on one. went_first: whether the loop went before other
+    programs."""
 
     end: RunEnd
     journal: Path
     about: dict[str, Any]
     truth: Any = None
-    left: str = ""
     went_first: bool = False
 
 
@@ -66,10 +64,9 @@ def drive(prepared: Prepared, stop: Stop, on_tick: Callable[[Tick], None] | None
                 end, went_first = _executed(prepared, device, journal, stop, on_tick)
             finally:
                 trouble = _closed(journal)
-            left = _left(prepared, device, end)
         finally:
             device.close()
-    return Driven(end.with_trouble(trouble), path, about, getattr(device, "truth", None), left, went_first)
+    return Driven(end.with_trouble(trouble), path, about, getattr(device, "truth", None), went_first)
 
 
 def open_prepared(prepared: Prepared) -> Device:
@@ -109,17 +106,6 @@ def _check_ceiling(prepared: Prepared, about: dict[str, Any]) -> None:
             f"the protocol asks for {peak_MPa:.4g} MPa, and the firmware of this bench gives at most {ceiling_MPa:.4g} MPa",
             hint="ask for less, or flash what `benchlab bench firmware --calibration FILE` writes",
         )
-
-
-def _left(prepared: Prepared, device: Device, end: RunEnd) -> str:
-    """What is wrong with a bench of metal whose vent was confirmed: pressure that its monitor shows, a DAC that is not at 0."""
-    if prepared.spec.kind != "serial" or not end.vented:
-        return ""
-    try:
-        vent_bench(device, prepared.bench, RealClock())
-    except BenchError as error:
-        return str(error)
-    return ""
 
 
 def _make_folder(folder: Path) -> None:

@@ -2,62 +2,102 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
-from benchlab.errors import BenchError, BenchlabError, InputError
+from benchlab.errors import BenchlabError, InputError, counted
 from benchlab.io.nexus import plain
+from benchlab.runner.stop import Stop
+from benchlab.workflows.drawn_film import Progress
 from benchlab.workflows.drive_outputs import write_results
 from benchlab.workflows.run import Driven
 from benchlab.workflows.run_prepare import Prepared
 
+INTERRUPTED = 130
 
-def written(prepared: Prepared, driven: Driven) -> dict[str, Any]:
+
+class EnoughError(Exception):
+    """Whoever asked for the film does not want it any more."""
+
+
+def written(
+    prepared: Prepared, driven: Driven, stop: Stop | None = None, progress: Progress | None = None
+) -> dict[str, Any]:
     """Write drive file, table, picture and, of a twin, its truth and, if asked for, its film from the journal; what `--json` prints.
 
-    The journal stays whatever happens. What cannot be made of it is a warning, and exit code 3 where the run itself ended well.
+    The journal stays whatever happens. What cannot be made of it is a warning, and exit code 3 where the run itself ended well, or 130
+    where somebody interrupted it: `stop` says so. progress: called with frames drawn and frames in all.
     """
-    end = driven.end
-    outputs, troubles = [str(driven.journal)], [end.trouble] if end.trouble else []
+    end, made = driven.end, [driven.journal]
+    troubles, code = [end.trouble] if end.trouble else [], InputError.exit_code
     try:
-        outputs += _results(prepared, driven)
+        _write_results(prepared, driven, made)
+        _write_film(prepared, driven, made, stop or Stop(), progress)
     except BenchlabError as error:
-        again = f"; make them with `benchlab recover {driven.journal}`" if end.ticks else ""
-        troubles.append(f"no further files: {error}{again}")
+        if driven.journal.exists():
+            troubles.append(f"no further files: {error}{_again(driven) if len(made) == 1 else ''}")
+    except EnoughError:
+        troubles.append("the film was not drawn: interrupted")
+        code = INTERRUPTED
+    except KeyboardInterrupt:
+        troubles.append(f"interrupted while files were written{_again(driven)}")
+        code = INTERRUPTED
+    gone = [path for path in made if not path.exists()]
+    if driven.journal in gone and not end.trouble:
+        troubles.append(f"{driven.journal} is gone: somebody took it away while it was written")
     warnings = [*prepared.warnings, *driven.about.get("notes", ()), *_doubts(prepared, driven), *troubles]
     found: dict[str, Any] = {
         "title": prepared.plan.title,
         "bench": str(prepared.spec),
         **end.record(),
         "control": prepared.control,
+        "guards_off": list(prepared.limits.off),
         "late_ms": None if prepared.fast else end.late_ms,
         "went_first": driven.went_first,
-        "exit_code": BenchError.exit_code
-        if driven.left
-        else end.exit_code or (InputError.exit_code if troubles else 0),
+        "exit_code": end.exit_code or (code if troubles else 0),
         "warnings": warnings,
-        "outputs": outputs,
+        "outputs": [str(path) for path in made if path not in gone],
     }
     if found["exit_code"]:
-        words = driven.left or (" ".join(troubles) if end.completed else f"{end.reason}: {end.cause.words}")
+        words = " ".join(troubles) if end.completed else f"{end.reason}: {end.cause.words}"
+        if end.emptied.empty is False and end.reason != "not empty":
+            words += f"; and after the vent {end.emptied.words}"
         found["error"] = {"code": found["exit_code"], "what": words, "file": None, "where": None, "hint": None}
     return {name: plain(value) for name, value in found.items()}
 
 
-def _results(prepared: Prepared, driven: Driven) -> list[str]:
-    made = list(write_results(driven.journal)["outputs"])
+def _again(driven: Driven) -> str:
+    """How to make what is missing."""
+    return (
+        f"; make them with `benchlab recover {driven.journal}`" if driven.end.ticks and driven.journal.exists() else ""
+    )
+
+
+def _write_results(prepared: Prepared, driven: Driven, made: list[Path]) -> None:
+    made += [Path(path) for path in write_results(driven.journal)["outputs"]]
     if driven.truth is not None:
         from benchlab.io.truth_table import write_truth_csv
 
         path = prepared.path(".truth.csv")
         write_truth_csv(path, driven.truth)
-        made.append(str(path))
-    if prepared.settings.video and prepared.twin is not None:
-        from benchlab.workflows.twin_film import write_twin_film
+        made.append(path)
 
-        path = prepared.path(".film.mp4")
-        write_twin_film(path, driven.truth, prepared.twin)
-        made.append(str(path))
-    return made
+
+def _write_film(prepared: Prepared, driven: Driven, made: list[Path], stop: Stop, progress: Progress | None) -> None:
+    if not prepared.settings.video or prepared.twin is None:
+        return
+    from benchlab.workflows.twin_film import write_twin_film
+
+    def drawn(done: int, total: int | None) -> None:
+        if stop.enough:
+            raise EnoughError
+        if progress is not None:
+            progress(done, total)
+
+    path = prepared.path(".film.mp4")
+    drawn(0, None)
+    write_twin_film(path, driven.truth, prepared.twin, progress=drawn)
+    made.append(path)
 
 
 def _doubts(prepared: Prepared, driven: Driven) -> list[str]:
@@ -65,11 +105,9 @@ def _doubts(prepared: Prepared, driven: Driven) -> list[str]:
     end, controller = driven.end, prepared.controller
     found = []
     if end.faults:
-        found.append(f"{end.faults} faults on the way, each in the journal with its cause")
+        found.append(f"{counted(end.faults, 'fault')} on the way, each in the journal with its cause")
     if not end.vented:
         found.append(f"nobody confirmed the vent: {end.vent_words}")
-    if driven.left:
-        found.append(driven.left)
     if limited := getattr(controller, "limited", 0):
         found.append(f"the controller was at a limit of pressure in {limited} ticks")
     return found

@@ -31,6 +31,7 @@ def header_of(prepared: Prepared, about: dict[str, Any]) -> dict[str, Any]:
         "control": prepared.control,
         "curve": None if prepared.curve is None else asdict(prepared.curve),
         "guards": asdict(prepared.limits),
+        "guards_off": list(prepared.limits.off),
         "clock": "virtual" if prepared.fast else "real",
         "pause_limit_s": settings.pause_limit_s,
         "seed": None if prepared.twin is None else prepared.twin.seed,

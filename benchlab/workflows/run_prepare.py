@@ -111,7 +111,10 @@ def prepare(protocol: str, settings: RunSettings) -> Prepared:
     twin = twin_of(spec, settings.seed, actuator)
     bench = bench_of(spec, settings.calibration, twin)
     plan, text, source = read_plan(protocol, settings)
-    check_limits(plan, bench)
+    try:
+        check_limits(plan, bench)
+    except InputError as error:
+        raise InputError(error.what, file=protocol, where=error.where, hint=error.hint) from error
     _check_rate(plan, spec)
     curve = actuator.curve if actuator is not None else None if twin is None else twin.curve
     chosen = choose(plan, bench, settings.control)
@@ -139,7 +142,7 @@ def prepare(protocol: str, settings: RunSettings) -> Prepared:
         control=control_told(chosen, curve),
         controller=controller,
         stem=stem,
-        warnings=(*bench_doubts(spec, bench), *_blind(bench), *warnings),
+        warnings=(*bench_doubts(spec, bench), *_blind(bench), *limits.off_words, *warnings),
     )
 
 
@@ -200,8 +203,11 @@ def _blind(bench: Bench) -> list[str]:
 
 
 def _stem(source: str, settings: RunSettings) -> Path:
-    name = settings.name or f"{source}-{datetime.now():%Y%m%d-%H%M%S}"
-    if name != Path(name).name or name.startswith(".") or not name.isprintable() or len(name.encode()) > LONGEST_NAME:
-        hint = f"give --name without folders, up to {LONGEST_NAME} bytes, and --out for the folder"
+    name = f"{source}-{datetime.now():%Y%m%d-%H%M%S}" if settings.name is None else settings.name
+    hint = f"give --name without folders, up to {LONGEST_NAME} bytes, and --out for the folder"
+    if suffix := next((each for each in SUFFIXES if name.endswith(each)), ""):
+        hint = f"give --name {name.removesuffix(suffix)}: the suffixes come by themselves"
+    odd = name != Path(name).name or not name.strip() or name.startswith((".", "-")) or not name.isprintable()
+    if odd or suffix or len(name.encode()) > LONGEST_NAME:
         raise UsageError(f"{name[:60]!r} is no name for files", hint=hint)
     return settings.out / name

@@ -36,6 +36,7 @@ def planned(prepared: Prepared) -> dict[str, Any]:
         "bench_spec": str(prepared.spec),
         "bench": {**asdict(bench), "ceiling_MPa": bench.ceiling_MPa, "ceiling_V": bench.volts(bench.ceiling_code)},
         "guards": [guard.name for guard in guards],
+        "guards_off": list(prepared.limits.off),
         "limits": asdict(prepared.limits),
         "control": prepared.control,
         "warnings": list(prepared.warnings),

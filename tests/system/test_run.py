@@ -23,9 +23,9 @@ def test_each_shipped_protocol_runs_to_its_end_on_the_twin(tmp_path: Path, name:
     end, plan = driven(tmp_path, name).end, read_protocol(name)
     assert (end.reason, end.vented, end.ticks) == ("completed", True, len(plan.time_s)), end.cause
     journal = read_journal(tmp_path / "a.journal")
-    assert journal.samples["tick"].tolist() == list(range(len(plan.time_s)))
+    assert journal.driven["tick"].tolist() == list(range(len(plan.time_s)))
     open_loop = np.isfinite(plan.pressure_MPa)
-    assert np.array_equal(journal.samples["command_MPa"][open_loop], plan.pressure_MPa[open_loop])
+    assert np.array_equal(journal.driven["command_MPa"][open_loop], plan.pressure_MPa[open_loop])
     assert journal.samples["command_MPa"].max() <= 0.35
     marks = [e for e in journal.events if e["kind"] in ("mark", "trigger")]
     assert [(e["kind"], e["text"]) for e in marks] == [(e.kind, e.text) for e in plan.events]
@@ -84,7 +84,7 @@ def test_a_closed_loop_reaches_its_angle(tmp_path: Path, benchlab: Any) -> None:
     (tmp_path / "loop.yaml").write_text(LOOP)
     done = benchlab("run", tmp_path / "loop.yaml", "--fast", "--out", tmp_path / "out", "--name", "a", "--json")
     assert done.code == 0, done.err
-    samples = read_journal(tmp_path / "out" / "a.journal").samples
+    samples = read_journal(tmp_path / "out" / "a.journal").driven
     assert samples["angle_deg"][-50:].mean() == pytest.approx(60, abs=1.0)
     assert np.isnan(samples["reference_deg"][:50]).all() and (samples["reference_deg"][100:] == 60).all()
 
@@ -97,7 +97,7 @@ def test_gains_come_from_a_file_too_and_their_rate_is_compared(tmp_path: Path, b
     done = benchlab("run", tmp_path / "loop.yaml", *words, "--name", "a")
     assert done.code == 0 and "the gains are for 50 Hz, and the plan runs at 100 Hz" in done.err
     journal = read_journal(tmp_path / "a.journal")
-    assert journal.samples["angle_deg"][-50:].mean() == pytest.approx(60, abs=0.5)
+    assert journal.driven["angle_deg"][-50:].mean() == pytest.approx(60, abs=0.5)
     assert journal.header["control"]["feed_forward"] is True and journal.header["control"]["ki_MPa_per_deg_s"] == 0.01
     done = benchlab("run", "linear_ramp", *words, "--name", "b")
     assert done.code == 0 and "--control is not used: no step is closed-loop" in done.err
@@ -134,7 +134,7 @@ def test_the_firmware_itself_runs_a_protocol(tmp_path: Path, short: Path, benchl
     done = benchlab("run", short, "--bench", "emulated", "--fast", "--out", tmp_path, "--name", "a", "--json")
     assert done.code == 0, done.err
     journal = read_journal(tmp_path / "a.journal")
-    assert len(journal.samples) == 801 and journal.header["device"]["firmware"]
+    assert len(journal.driven) == 801 and journal.header["device"]["firmware"]
     assert journal.samples["code"].max() > 2500 and journal.samples["code"][-1] == 0
     assert 0.29 < np.nanmax(journal.samples["pressure_MPa"]) < 0.36  # its regulator, monitor and actuator live
     assert 90 < np.nanmax(journal.samples["angle_deg"]) < 115

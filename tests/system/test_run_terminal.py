@@ -74,7 +74,7 @@ def test_keys_pause_resume_and_stop_and_the_terminal_is_left_as_it_was(tmp_path:
     terminal.press("q")
     found = terminal.ended()
     assert (found["reason"], found["vented"], terminal.process.returncode) == ("quit", True, 130)
-    assert [e["kind"] for e in read_journal(tmp_path / "a.journal").events] == ["pause", "resume", "stop"]
+    assert [e["kind"] for e in read_journal(tmp_path / "a.journal").events] == ["pause", "resume", "vent", "stop"]
     assert termios.tcgetattr(terminal.theirs) == terminal.before
     terminal.until("wrote")
 

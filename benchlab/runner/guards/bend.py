@@ -28,6 +28,7 @@ class BendGuard:
         self.lag = Lag(limits.lag_s)
         self.idle, self.bent, self.resting = Timer(), Timer(), Timer()
         self.rest_deg, self.peak_deg = math.nan, 0.0
+        self.vented_at_s = math.nan
 
     def check(self, tick: Tick) -> Cause | None:
         angle, time_s = tick.angle_deg, tick.time_s
@@ -39,16 +40,19 @@ class BendGuard:
         surely = min(lagging, tick.command_MPa)
         moved, expected = angle - self.rest_deg, self.expected_deg(surely)
         self.peak_deg = max(self.peak_deg, moved)
-        idle = expected >= self.WORTH_DEG and moved < self.limits.bend_share * expected
+        share = 0.0 if math.isinf(self.limits.bend_share) else self.limits.bend_share
+        idle = expected >= self.WORTH_DEG and moved < share * expected
         if self.idle.count(time_s, idle) >= self.limits.bend_s:
             return self._idle(tick, moved, expected)
-        rest = lagging <= self.REST_MPa and tick.command_MPa <= self.REST_MPa
+        asked = tick.command_MPa > self.REST_MPa
+        if asked or math.isnan(self.vented_at_s):
+            self.vented_at_s = math.nan if asked else time_s
+        rest = lagging <= self.REST_MPa and not asked
         bent = rest and self.peak_deg >= self.WORTH_DEG and moved > self.LEFT_SHARE * self.peak_deg
         if self.bent.count(time_s, bent) >= self.limits.bend_s:
-            words = f"vented for {self.bent.for_s:.2g} s and the angle is still {moved:.1f}° of {self.peak_deg:.1f}°"
-            return Cause(
-                "not following", f"{words}: exhaust blocked, tube kinked or a valve shut; PRESSURE MAY BE LEFT INSIDE"
-            )
+            words = f"nothing asked for since {time_s - self.vented_at_s:.1f} s and the angle is still {moved:.1f}° of {self.peak_deg:.1f}°"
+            look = "exhaust blocked, tube kinked or a valve shut, or it empties slowly (--guard lag_s=..., bend_s=...)"
+            return Cause("not following", f"{words}: {look}")
         if self.resting.count(time_s, rest and not bent) >= self.limits.bend_s and rest:
             self.rest_deg, self.peak_deg = angle, 0.0
         return None
@@ -56,7 +60,8 @@ class BendGuard:
     def _idle(self, tick: Tick, moved: float, expected: float) -> Cause:
         words = f"{1e3 * tick.command_MPa:.0f} kPa asked for and the angle is {moved:.1f}° from rest for {self.idle.for_s:.2g} s"
         least = f"where {self.limits.bend_share * expected:.1f}° are the least"
-        return Cause("not following", f"{words}, {least}: burst, tube off, or the flex sensor came off")
+        look = "burst, tube off, the flex sensor came off, or it is held straight (--guard bend_s=off)"
+        return Cause("not following", f"{words}, {least}: {look}")
 
 
 def least_expected_deg(pressure_MPa: float) -> float:

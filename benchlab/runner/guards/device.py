@@ -40,7 +40,10 @@ class DeviceGuard:
 def too_late(index: int, late_s: float, most_s: float) -> Cause:
     """The computer is too slow or was suspended, or the device takes longer than a tick to answer; the tick is not sent any more."""
     words = f"tick {index} comes {late_s:.3g} s after its deadline, more than {most_s:g} s"
-    return Cause("overrun", f"{words}: the computer is busy or slept, or the rate is more than the bench can answer")
+    return Cause(
+        "overrun",
+        f"{words}: the computer is busy or slept, or the rate is more than the bench can answer; --guard late_s=... waits longer",
+    )
 
 
 class FaultGuard:
@@ -67,4 +70,7 @@ class FaultGuard:
         if (total := sum(n for t, n in self.recent if t > tick.time_s - self.OVER_S)) <= self.most:
             return None
         words = f"{total} faults on the line in {self.OVER_S:g} s, more than {self.most:g}, the last: {self.last}"
-        return Cause("faults", f"{words}; look at cable, plug and noise, or run at a lower rate")
+        return Cause(
+            "faults",
+            f"{words}; look at cable, plug and noise, or run at a lower rate; --guard fault_share=... allows more",
+        )

@@ -22,7 +22,8 @@ class AboveGuard:
         if self.timer.count(tick.time_s, pressure > self.limit_MPa + self.above_MPa) < self.for_s:
             return None
         words = f"measured {pressure:.3f} MPa, above the limit of {self.limit_MPa:g} MPa"
-        return Cause("above limit", f"{words}: the regulator does not hold, or its calibration is wrong")
+        look = "the regulator does not hold, or its calibration is wrong; --guard above_MPa=... allows more"
+        return Cause("above limit", f"{words}: {look}")
 
 
 class FollowGuard:
@@ -47,4 +48,5 @@ class FollowGuard:
         below = off < 0
         words = f"pressure {abs(1e3 * off):.0f} kPa {'below' if below else 'above'} set for {max(near, far):.2g} s"
         look = "leak, burst or tube off, or no supply of air" if below else "exhaust blocked, or the regulator is stuck"
-        return Cause("not following", f"{words}: {look}")
+        less = f"or a regulator slower than {limits.lag_s:g} s (--guard lag_s=...), or less exact (follow_MPa=..., follow_s=...)"
+        return Cause("not following", f"{words}: {look}, {less}")

@@ -29,7 +29,8 @@ class SensorGuard:
         value = self.value(tick)
         good = self.scale[0] <= value <= self.scale[1]
         if self.bad.count(tick.time_s, not good) >= self.limits.sensor_s:
-            return Cause("sensor", f"{self._fault(value)} for {self.bad.for_s:.2g} s: look at the sensor and its wires")
+            words = f"{self._fault(value)} for {self.bad.for_s:.2g} s: look at the sensor and its wires; --guard sensor_s=... waits longer"
+            return Cause("sensor", words, sensor=self.name)
         return self._stuck(tick, value)
 
     def _fault(self, value: float) -> str:
@@ -53,4 +54,6 @@ class SensorGuard:
             return None
         words = f"the {self.name} reads exactly {value:.4g} {self.unit} for {tick.time_s - self.same_since:.2g} s"
         moved = f"while the pressure asked for went by {1e3 * (self.high - self.low):.0f} kPa"
-        return Cause("sensor", f"{words} {moved}: stuck, or not connected")
+        return Cause(
+            "sensor", f"{words} {moved}: stuck, or not connected; --guard stuck_s=... waits longer", sensor=self.name
+        )

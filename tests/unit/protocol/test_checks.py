@@ -27,8 +27,8 @@ def test_the_worst_step_is_named_with_line_value_limit_and_remedy() -> None:
     with pytest.raises(InputError) as caught:
         check_limits(plan, replace(CALIBRATED, limit_MPa=0.3))
     assert str(caught.value) == (
-        "line 5, step 2 (hold 0.33 MPa for 1 s): asks for 0.33 MPa, above 0.3 MPa, the ceiling of bench metal, "
-        "as 2 steps of 3 are too high; ask for less"
+        "line 5, step 2 (hold 0.33 MPa for 1 s): asks for 0.33 MPa, above 0.3 MPa, the ceiling of the bench metal; "
+        "in all, 2 steps of 3 ask for too much; ask for less"
     )
     assert caught.value.exit_code == 3
 

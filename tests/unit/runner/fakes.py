@@ -24,13 +24,17 @@ Change = Callable[[int, dict[str, Any]], None]
 
 
 class FakeDevice:
-    """Follows at once, and bends by 300° per MPa. change(n, fields): falsifies the n-th reading or raises."""
+    """Follows at once, and bends by 300° per MPa. change(n, fields): falsifies the n-th reading or raises.
+
+    asked: while it was armed, each logged as `exchange`; watched: after its vent. after_vent(n, fields): falsifies the n-th of those."""
 
     kind = "fake"
 
-    def __init__(self, change: Change | None = None, vent_fails: int = 0) -> None:
+    def __init__(self, change: Change | None = None, vent_fails: int = 0, after_vent: Change | None = None) -> None:
         self.calls: list[str] = []
         self.asked: list[tuple[float, float, bool]] = []
+        self.watched: list[tuple[float, float, bool]] = []
+        self.after_vent = after_vent
         self.change, self.vent_fails = change, vent_fails
         self.armed = False
         self.pending: list[Fault] = []
@@ -43,18 +47,20 @@ class FakeDevice:
         self.armed = True
 
     def exchange(self, time_s: float, pressure_MPa: float, trigger: bool = False) -> Reading:
-        self.calls.append("exchange")
-        self.asked.append((time_s, pressure_MPa, trigger))
-        wiggle = 1e-4 * math.sin(len(self.asked))
+        if self.armed:
+            self.calls.append("exchange")
+        here, change = (self.asked, self.change) if self.armed else (self.watched, self.after_vent)
+        here.append((time_s, pressure_MPa, trigger))
+        wiggle = 1e-4 * math.sin(len(here))
         fields: dict[str, Any] = {
             "pressure_MPa": pressure_MPa + wiggle / 10,
             "flex_V": 1.0 + DEG_PER_MPA * pressure_MPa / 100 + wiggle,
             "code": BENCH.code(pressure_MPa),
             "device_time_s": time_s,
-            "status": Status.ARMED,
+            "status": Status.ARMED if self.armed else Status(0),
         }
-        if self.change is not None:
-            self.change(len(self.asked) - 1, fields)
+        if change is not None:
+            change(len(here) - 1, fields)
         return Reading(**fields)
 
     def vent(self) -> None:
@@ -75,19 +81,23 @@ class FakeDevice:
 
 
 class FakeJournal:
-    """Keeps all; `log` has the order of everything, device calls too if it shares the device's list."""
+    """Keeps all; `log` has the order of everything, device calls too if it shares the device's list. watched: samples after the vent."""
 
     def __init__(self, log: list[str] | None = None) -> None:
         self.samples: list[tuple[Any, ...]] = []
+        self.watched: list[tuple[Any, ...]] = []
         self.events: list[tuple[str, dict[str, Any]]] = []
         self.log = [] if log is None else log
 
     def sample(self, *values: Any) -> None:
+        if "vent" in self.kinds():
+            self.watched.append(values)
+            return
         self.log.append("sample")
         self.samples.append(values)
 
     def event(self, kind: str, **content: Any) -> None:
-        self.log.append(kind)
+        self.log.append("vented" if kind == "vent" else kind)
         self.events.append((kind, content))
 
     def kinds(self) -> list[str]:

@@ -23,7 +23,7 @@ def test_each_tick_of_the_plan_is_asked_once_at_its_time_and_written() -> None:
     assert [p for _, p, _ in device.asked] == pressure.tolist()
     assert np.allclose([t for t, _, _ in device.asked], np.arange(len(pressure)) / 100)
     assert [s[0] for s in journal.samples] == list(range(len(pressure)))
-    assert device.calls[0] == "arm" and device.calls[-2:] == ["vent", "stop"]
+    assert device.calls[0] == "arm" and device.calls[-3:] == ["vent", "vented", "stop"]
     assert journal.events[-1] == ("stop", end.record())
     last = journal.samples[-1]
     assert len(last) == len(SAMPLE.names or ())
@@ -35,7 +35,7 @@ def test_marks_and_triggers_come_at_the_first_tick_at_or_after_their_time() -> N
     events = (PlanEvent(0.5, "trigger"), PlanEvent(0.501, "mark", "loose"), PlanEvent(9.0, "mark", "after the end"))
     _, device, journal = run(plan=plan_of(ramp(), events=events))
     assert [i for i, (_, _, trigger) in enumerate(device.asked) if trigger] == [50]
-    told = [(kind, c["tick"], c["text"]) for kind, c in journal.events if kind != "stop"]
+    told = [(kind, c["tick"], c["text"]) for kind, c in journal.events if kind not in ("vent", "stop")]
     assert told == [("trigger", 50, ""), ("mark", 51, "loose"), ("mark", 299, "after the end")]
 
 
@@ -86,7 +86,7 @@ def test_whatever_is_raised_the_vent_comes_before_the_record(error: BaseExceptio
 
     end, device, journal = run(device=FakeDevice(fail))
     assert (end.reason, end.exit_code, end.ticks, end.vented) == (reason, code, 120, True)
-    assert device.calls[-3:] == ["exchange", "vent", "stop"]
+    assert device.calls[-4:] == ["exchange", "vent", "vented", "stop"]
     assert journal.events[-1][1]["words"] == end.cause.words and end.cause.error is error
 
 
@@ -98,7 +98,12 @@ def test_a_device_that_does_not_arm_is_vented_and_never_asked() -> None:
 
     device.arm = refuse
     end, device, _ = run(device=device)
-    assert end.reason == "refused" and device.asked == [] and device.calls == ["vent", "stop"] and end.late_ms is None
+    assert (
+        end.reason == "refused"
+        and device.asked == []
+        and device.calls == ["vent", "vented", "stop"]
+        and end.late_ms is None
+    )
 
 
 def test_a_full_disk_vents_and_says_so() -> None:
@@ -216,4 +221,4 @@ def test_the_sample_that_stopped_the_run_is_written_after_the_vent() -> None:
 
     end, device, journal = run(device=FakeDevice(reboot))
     assert end.reason == "rebooted" and end.ticks == 71 == len(journal.samples)
-    assert device.calls[-4:] == ["exchange", "vent", "sample", "stop"]
+    assert device.calls[-5:] == ["exchange", "vent", "sample", "vented", "stop"]

@@ -62,7 +62,7 @@ def test_in_a_pause_the_pressure_holds_and_the_plan_stands_still() -> None:
     held = [s for s in journal.samples if s[0] == 100]
     assert len(held) == pytest.approx(201, abs=2) and {s[5] for s in held} == {pressure[100]}
     assert [p for _, p, _ in device.asked][-199:] == pressure[101:].tolist()
-    assert journal.kinds() == ["pause", "resume", "stop"]
+    assert journal.kinds() == ["pause", "resume", "vent", "stop"]
     assert np.allclose(np.diff([t for t, _, _ in device.asked]), 0.01, atol=1e-6)  # kept alive throughout
 
 
@@ -76,7 +76,7 @@ def test_a_pause_ends_in_a_vent_after_its_limit() -> None:
 def test_in_virtual_time_nothing_is_paused() -> None:
     stop = Stop(pausable=False)
     end, _, journal = run(stop=stop, on_tick=lambda tick: stop.toggle_pause() if tick.index == 10 else None)
-    assert end.reason == "completed" and journal.kinds() == ["stop"]
+    assert end.reason == "completed" and journal.kinds() == ["vent", "stop"]
 
 
 def test_a_wish_to_pause_before_the_first_tick_counts_after_it() -> None:
