@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from benchlab.errors import counted
 from benchlab.io.study_values import StudyValues
-from benchlab.report.study.figures import OTHER
+from benchlab.report.study.figures import OTHER, TITLE_IN
+from benchlab.report.wording import width_in
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -19,6 +20,8 @@ _WHOLE = {
 _PARTS = {"": "measured", "twin": "simulated on the digital twin", "emulated": "of the emulated bench"}
 _MARKS = {"twin": "simulated", "emulated": "emulated"}
 MIXED = "mixed origins"
+SIZE, BOLD = 7.5, 1.15
+"""Size of the mark, and how much wider bold letters are."""
 
 
 def origins_of(values: StudyValues) -> dict[str, int]:
@@ -48,8 +51,11 @@ def origins_mark(values: StudyValues) -> str:
 
 
 def write_mark(figure: Figure, mark: str) -> None:
-    """A mark in the upper right corner of a figure, beside its title; nothing for ""."""
-    if mark:
-        width, height = figure.get_size_inches()
-        figure.text(1 - 0.06 / width, 1 - 0.05 / height, mark, va="top", ha="right", fontsize=7.5, fontweight="bold",
-                    color=OTHER)  # fmt: skip
+    """A mark in the upper right corner of a figure, or upright at its right edge where the title needs the corner; nothing for ""."""
+    if not mark:
+        return
+    width, height = figure.get_size_inches()
+    taken = sum(width_in(text.get_text(), float(text.get_fontsize()) * BOLD) for text in figure.texts)
+    upright = taken + width_in(mark, SIZE * BOLD) > width - 0.25
+    figure.text(1 - 0.04 / width, 1 - (TITLE_IN if upright else 0.05) / height, mark, va="top", ha="right", fontsize=SIZE,
+                fontweight="bold", color=OTHER, rotation=90 if upright else 0)  # fmt: skip
