@@ -54,7 +54,7 @@ def test_new_gives_the_same_file_twice_and_replaces_none_unasked(bench: Path, be
     assert benchlab("study", "new", bench, "--overwrite").code == 0
     assert (bench / "study.yaml").read_bytes() == first
     assert [p.name for p in bench.iterdir() if p.name.startswith(".")] == []
-    assert benchlab("study", "new", bench, "--out", bench / "none" / "s.yaml").code == 2
+    assert benchlab("study", "new", bench, "--out", bench / "none" / "of" / "s.yaml").code == 2
 
 
 def test_new_says_what_it_does_not_know(bench: Path, benchlab: Callable) -> None:

@@ -144,7 +144,7 @@ def test_names_that_cannot_be_written(tmp_path: Path) -> None:
         with pytest.raises(UsageError, match=r"\.dxf or \.svg"):
             write_cut(tmp_path / name, sheet(), "", {})
     with pytest.raises(InputError, match="cannot write"):
-        write_cut(tmp_path / "none" / "a.dxf", sheet(), "", {})
+        write_cut(tmp_path / "none" / "of" / "a.dxf", sheet(), "", {})
     assert not list(tmp_path.iterdir())
     write_cut(tmp_path / "A.DXF", sheet(), "", {})
     assert ezdxf.readfile(tmp_path / "A.DXF").dxfversion == "AC1015"

@@ -140,7 +140,7 @@ def test_cycles_follow_the_counts_and_triggers_the_commands(journal):
 
 def test_the_disk_refuses_and_nothing_is_there(tmp_path, journal):
     with pytest.raises(InputError):
-        write_drive_file(tmp_path / "none" / "a.h5", journal)
+        write_drive_file(tmp_path / "none" / "of" / "a.h5", journal)
 
 
 def test_a_file_of_another_kind_and_a_newer_one_are_refused(tmp_path, drive):
