@@ -17,8 +17,8 @@ import h5py
 import numpy as np
 
 from benchlab.errors import InputError
-from benchlab.io.hdf5 import add_numbers, open_hdf5
-from benchlab.io.journal import SAMPLE, UNITS, Journal
+from benchlab.io.hdf5 import add_numbers, is_hdf5, open_hdf5
+from benchlab.io.journal import SAMPLE, UNITS, Journal, read_journal
 from benchlab.io.journal_format import Loss
 from benchlab.io.nexus import Schema, nxdata, read_document, write_nexus
 from benchlab.protocol.cycles import number_cycles
@@ -99,6 +99,11 @@ def read_drive_file(path: Path) -> Journal:
         told = read_document(reader, "journal", SCHEMA)
         losses = tuple(Loss(**loss) for loss in told["losses"])
     return Journal(header, samples, tuple(events), bool(told["complete"]), losses)
+
+
+def read_run_record(path: Path) -> Journal:
+    """What is recorded of a run, from its journal or from its drive file. Raises as `read_journal` and `read_drive_file`."""
+    return read_drive_file(path) if is_hdf5(path) else read_journal(path)
 
 
 def signal_of(journal: Journal) -> str:

@@ -135,18 +135,17 @@ def open_bench(
 
 def _replay(path: Path) -> Device:
     from benchlab.devices.replay import Replay
-    from benchlab.io.drive_file import trigger_ticks
-    from benchlab.io.journal import read_journal
+    from benchlab.io.drive_file import read_run_record, trigger_ticks
 
-    journal = read_journal(path)
+    journal = read_run_record(path)
     if not len(journal.samples):
-        raise InputError("holds no sample", file=path, hint="replay a journal of a run that began")
+        raise InputError("holds no sample", file=path, hint="replay a run that began")
     watched = len(journal.samples) - len(journal.driven)
     return Replay(journal.samples, journal.header.get("device", {}), trigger_ticks(journal), watched)
 
 
 def _recorded_bench(path: Path) -> Bench:
-    from benchlab.io.journal import read_journal
+    from benchlab.io.drive_file import read_run_record
     from benchlab.io.recorded_bench import recorded_bench
 
-    return recorded_bench(read_journal(path).header, path)
+    return recorded_bench(read_run_record(path).header, path)

@@ -103,11 +103,12 @@ def test_gains_come_from_a_file_too_and_their_rate_is_compared(tmp_path: Path, b
     assert done.code == 0 and "--control is not used: no step is closed-loop" in done.err
 
 
+@pytest.mark.parametrize("kind", ["a.journal", "a.h5"])
 def test_a_replay_goes_the_same_way_and_fails_at_the_first_difference(
-    tmp_path: Path, short: Path, benchlab: Any
+    tmp_path: Path, short: Path, benchlab: Any, kind: str
 ) -> None:
     assert benchlab("run", short, "--fast", "--out", tmp_path, "--name", "a").code == 0
-    replay = ("--bench", f"replay:{tmp_path / 'a.journal'}", "--out", tmp_path, "--json")
+    replay = ("--bench", f"replay:{tmp_path / kind}", "--out", tmp_path, "--json")
     done = benchlab("run", short, *replay, "--name", "b")
     assert done.code == 0, done.err
     a, b = (read_journal(tmp_path / f"{name}.journal").samples for name in "ab")
