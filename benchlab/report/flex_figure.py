@@ -20,8 +20,8 @@ FALLING = "#D55E00"
 def draw_flex_figure(found: FlexCalibration, title: str, note: str) -> Figure:
     """The holds and their line above, their distance from it below. title, note: plain text; the note says what bench it was."""
     figure = figure_class()(figsize=(6.4, 5.6), dpi=DPI)
-    top = figure.add_axes((0.14, 0.37, 0.825, 0.52))
-    below = figure.add_axes((0.14, 0.1, 0.825, 0.22), sharex=top)
+    top = figure.add_axes((0.165, 0.37, 0.80, 0.52))
+    below = figure.add_axes((0.165, 0.1, 0.80, 0.22), sharex=top)
     for ax, values in ((top, found.angle_deg), (below, found.residual_deg)):
         for way, mark, colour, label in (
             (True, "^", BLUE, "pressure rising"),
@@ -30,7 +30,7 @@ def draw_flex_figure(found: FlexCalibration, title: str, note: str) -> Figure:
             here = found.rising == way
             ax.plot(found.volts[here], values[here], mark, color=colour, markersize=5, label=label)
         dress(ax)
-        ax.yaxis.set_label_coords(-0.105, 0.5)
+        ax.yaxis.set_label_coords(-0.125, 0.5)
     ends = np.array([found.volts.min(), found.volts.max()])
     gain, offset = found.line.gain.value, found.line.offset.value
     sign = "−" if offset < 0 else "+"
@@ -51,6 +51,6 @@ def draw_flex_figure(found: FlexCalibration, title: str, note: str) -> Figure:
     top.legend(loc="best", frameon=False, fontsize=8.5)
     below.set_ylabel("angle − line (°)")
     below.set_xlabel("volts of the flex sensor's divider")
-    figure.text(0.14, 0.95, drawable(title, 60), fontsize=12, fontweight="bold", parse_math=False)
-    figure.text(0.14, 0.91, drawable(note, 95), fontsize=8.5, color=GREY, parse_math=False)
+    figure.text(0.165, 0.95, drawable(title, 60), fontsize=12, fontweight="bold", parse_math=False)
+    figure.text(0.165, 0.91, drawable(note, 95), fontsize=8.5, color=GREY, parse_math=False)
     return figure

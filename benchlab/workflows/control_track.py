@@ -99,5 +99,5 @@ def _gains(run: DrivenRun) -> str:
     words = f"PI kp {control['kp_MPa_per_deg']:.3g} MPa/°, ki {control['ki_MPa_per_deg_s']:.3g} MPa/(°·s)"
     if not control.get("feed_forward"):
         return f"{words}, no feed-forward"
-    by = f" by {control['curve']}" if control.get("curve") else ""
+    by = f" by {str(control['curve']).partition(',')[0]}" if control.get("curve") else ""
     return f"{words}; feed-forward{by}, lead {control['lead_s']:.2g} s"

@@ -59,3 +59,20 @@ def test_a_flex_calibration_is_drawn_hold_by_hold() -> None:
     (line,) = [str(label) for label in lines if "°/V" in str(label)]
     assert float(line.split()[0].replace("−", "-")) == pytest.approx(-100, abs=0.2)
     assert np.abs(np.concatenate([line.get_ydata() for line in below.lines[:2]])).max() < 0.1
+    (band,) = below.get_legend().get_texts()
+    assert band.get_text() == "± 1 SD of a hold"
+
+
+def test_the_labels_of_small_residuals_stay_within_the_figure() -> None:
+    """Five digits left of the axis push no label over the edge."""
+    levels = np.repeat(np.array([0.0, 0.1, 0.2, 0.3, 0.2, 0.1, 0.0]), 200)
+    t = np.arange(len(levels)) * 0.01
+    noise = np.random.default_rng(0).normal(0, 1e-4, len(t))
+    found = calibrate_flex(t, levels, 3 - 4 * levels + noise, t, 400 * levels)
+    assert 0 < np.abs(found.residual_deg).max() < 0.01
+    figure = draw_flex_figure(found, "a", "b")
+    figure.canvas.draw()
+    for ax in figure.axes:
+        edges = ax.yaxis.label.get_window_extent()
+        assert edges.x0 > 5
+        assert all(edges.x1 < tick.get_window_extent().x0 for tick in ax.get_yticklabels() if tick.get_text())
