@@ -9,6 +9,7 @@ import math
 import os
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 
@@ -31,9 +32,11 @@ class Screen:
     def __init__(self, plan: Plan, stop: Stop, keys: bool) -> None:
         self.plan, self.stop, self.keys = plan, stop, keys
         self.tick: Tick | None = None
-        self.most_late_s = 0.0
+        self.most_late_s, self.began_s = 0.0, math.nan
 
     def on_tick(self, tick: Tick) -> None:
+        if self.tick is None:
+            self.began_s = time.monotonic()
         self.tick = tick
         self.most_late_s = max(self.most_late_s, tick.late_s)
 
@@ -41,7 +44,15 @@ class Screen:
         """Where in the plan: `3.2 of 10.0 s, ramp to 0.35 MPa`."""
         plan = self.plan
         step = plan.steps[int(plan.step[tick.index])]
-        return f"{plan.time_s[tick.index]:.1f} of {plan.duration_s:.1f} s, {printable(step.label)}"
+        return f"{plan.time_s[tick.index]:.1f} of {plan.duration_s:.1f} s{self.left(tick)}, {printable(step.label)}"
+
+    def left(self, tick: Tick) -> str:
+        """In virtual time, how long it still computes: ` (about 40 s left)`, once there is something to go by."""
+        done, all_ticks = tick.index + 1, len(self.plan.time_s)
+        passed_s = time.monotonic() - self.began_s
+        if self.stop.pausable or passed_s < 1.0:
+            return ""
+        return f" (about {passed_s * (all_ticks - done) / done:.0f} s left)"
 
     def values(self, tick: Tick) -> str:
         """`set 0.210 MPa, measured 0.208 MPa, 62.4°, at most 0.9 ms late`."""
@@ -54,6 +65,8 @@ class Screen:
         return ", ".join(parts)
 
     def hint(self) -> str:
+        if self.stop.over:
+            return "vented; watched until it is empty, Ctrl-C ends that"
         if self.stop.cause is not None:
             return "stopping"
         if self.stop.paused:

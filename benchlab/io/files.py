@@ -53,7 +53,8 @@ def sha256(path: Path) -> str:
 
 def cannot_write(error: OSError, path: Path) -> InputError:
     """What the disk said, as one line about `path`."""
-    hint = "free some space; the old result is unchanged" if error.errno == errno.ENOSPC else None
+    kept = "; the old result is unchanged" if path.is_file() else ""
+    hint = f"free some space{kept}" if error.errno == errno.ENOSPC else None
     return InputError(f"could not be written: {reason_of(error)}", file=path, hint=hint)
 
 

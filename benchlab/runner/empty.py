@@ -16,7 +16,7 @@ from benchlab.runner.tick import Tick
 EMPTY_MPA = 0.01
 """A monitor below this shows that there is nothing at the regulator."""
 
-BENT_DEG, BACK_SHARE, BACK_DEG = 10.0, 0.3, 5.0
+BENT_DEG, BACK_SHARE, BACK_DEG = 10.0, 0.2, 5.0
 """An actuator that bent by the first is straight again with less than the second of its largest angle left, or than the third."""
 
 FLEX_MARGIN_V = 0.02

@@ -16,7 +16,7 @@ from benchlab.errors import UsageError
 from benchlab.runner.clock import VirtualClock
 from benchlab.runner.end import RunEnd
 from benchlab.runner.guards.choice import guards_of
-from benchlab.runner.guards.limits import Limits
+from benchlab.runner.guards.limits import MOST, NEVER_OFF, UNSEEN, Limits
 from benchlab.runner.run import execute
 from tests.unit.runner.fakes import BENCH, DEG_PER_MPA, FakeDevice, FakeJournal, plan_of, ramp
 
@@ -287,3 +287,41 @@ def test_limits_are_set_by_name_and_switched_off() -> None:
     for wrong in ("follow=1", "follow_MPa=x", "follow_MPa=-1", "late_s=nan", "late_s"):
         with pytest.raises(UsageError, match="--guard"):
             Limits.of((wrong,))
+
+
+@pytest.mark.parametrize(
+    "word", ["above_MPa=5", "lag_s=off", "bend_share=2", "bend_s=nan", "late_s=0", "follow_s=", "empty_s=1e9"]
+)
+def test_a_limit_that_guards_nothing_is_refused(word: str) -> None:
+    with pytest.raises(UsageError, match=rf"--guard {word}: (more than|not a number above)"):
+        Limits.of((word,))
+
+
+def test_a_guard_that_is_off_is_not_among_those_that_watch_and_is_told() -> None:
+    limits = Limits.of(("above_MPa=off", "bend_s=off", "stuck_s=off"))
+    names = [guard.name for guard in guards_of(BENCH, 100.0, limits)]
+    assert "bending" not in names and "pressure above the limit" not in names and "flex sensor" in names
+    assert limits.off == ("above_MPa", "bend_s", "stuck_s")
+    assert "a pressure above the limit (above_MPa)" in limits.off_words[0] and Limits().off_words == []
+    off = Limits.of(("sensor_s=off", "stuck_MPa=off"))
+    names = [guard.name for guard in guards_of(BENCH, 100.0, off)]
+    assert "flex sensor" not in names and "pressure above the limit" in names
+
+
+def test_every_limit_has_a_bound_and_words() -> None:
+    names = {each.name for each in fields(Limits)}
+    assert set(MOST) == names and set(UNSEEN) == names - set(NEVER_OFF)
+    assert all(getattr(Limits(), name) < most for name, most in MOST.items())
+
+
+def test_a_share_that_is_off_lets_anything_pass() -> None:
+    limits = Limits.of(("bend_share=off", "stuck_s=off"))
+    assert run(unbending(0), bench=NO_MONITOR, limits=limits).reason == "completed"
+
+
+def test_the_guards_name_the_option_that_changes_them() -> None:
+    assert (
+        "--guard lag_s=" in run(lagging(3.0), STEPS).cause.words
+        and "regulator slower than 0.5 s" in run(lagging(3.0), STEPS).cause.words
+    )
+    assert "--guard bend_s=off" in run(unbending(0), bench=NO_MONITOR).cause.words

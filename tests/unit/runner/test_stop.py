@@ -112,3 +112,26 @@ def test_a_controller_is_told_of_a_missing_angle() -> None:
     )
     asked = [p for _, p, _ in device.asked]
     assert end.reason == "completed" and asked[251] == asked[252] == asked[253] == asked[250] != asked[254]
+
+
+def test_while_files_are_written_a_wish_says_enough_and_one_much_later_gets_through() -> None:
+    stop = Stop()
+    end, _, _ = run(stop=stop)
+    stop.write()
+    stop.on_signal(signal.SIGINT, None)
+    stop.on_signal(signal.SIGINT, None)
+    assert end.reason == "completed" and stop.enough and stop.cause is None
+    stop._asked_at -= 2
+    with pytest.raises(KeyboardInterrupt):
+        stop.on_signal(signal.SIGINT, None)
+
+
+def test_no_signal_gets_through_between_the_vent_and_the_files() -> None:
+    stop = Stop()
+
+    def shout(n: int, fields: dict[str, Any]) -> None:
+        stop.on_signal(signal.SIGINT, None)
+        stop._asked_at -= 5
+
+    end, device, _ = run(stop=stop, device=FakeDevice(after_vent=shout))
+    assert end.vented and end.reason == "completed" and len(device.watched) == 1
