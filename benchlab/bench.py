@@ -17,8 +17,16 @@ DAC_CODES = 4096
 NOMINAL_GAIN_MPA_PER_V = 0.48 / 5
 """The paper's regulator: 0 to 5 V is 0 to 0.48 MPa (section III-D)."""
 
-UNCALIBRATED_CEILING_V = 3.50
-"""Most volts, by the nominal supply, on a bench without a calibration."""
+PAPER_LIMIT_MPA = 0.35
+"""The paper's highest pressure; a bench with a higher limit says why."""
+
+UNCALIBRATED_CEILING_V, UNCALIBRATED_SHARE = 3.50, 0.96
+"""Most volts on a bench without a calibration, and the share of what its label allows, whatever the USB supply: the paper's regulator
+has 0.48 MPa at 5 V on its label, and its kind up to 0.5 MPa, which is 0.35 MPa at 3.50 V."""
+
+LABEL_SHARE, LABEL_CEILING_SHARE = 0.10, 0.03
+"""The pressure at 5 V may differ from the regulator's label by the first: a wrong unit, a wrong gain or supply differ by more. Whatever
+the line says, the volts stay below those that the label has for the limit by the second: 0.361 MPa of 0.35 where the label is right."""
 
 ADC_STEPS = 1024
 """Of the ATmega328P's ADC over its supply."""
@@ -66,8 +74,10 @@ class Bench:
     flex: bending angle in degrees over volts of the flex sensor's divider, None where it is not calibrated.
     supply_V: of the microcontroller, which is the DAC's and the ADC's reference. gauge, date: how and when it was
     calibrated. reference_counts: of 1.1 V at the ADC with that supply, as the firmware measures it; None where it was not.
-    calibrated: whether it was at all; without, at most 3.50 V are given, and the limit holds for a supply of 5.25 V too.
-    InputError for numbers that no bench has, among them a regulator that would not vent at 0 V.
+    full_scale_MPa: at 5 V, as the regulator's label says. limit_reason: why the limit is above 0.35 MPa, empty where it is not.
+    source: where a line is from that was never measured on this bench, as a data sheet; such a bench is not calibrated.
+    calibrated: whether it was at all; without, the limit holds for a supply of 5.25 V and a regulator of 4 % more than its label too.
+    InputError for numbers that no bench has, among them a regulator that would not vent at 0 V or is not as its label says.
 
     >>> bench = Bench(name="a", calibrated=True)
     >>> bench.code(0.35), round(bench.volts(2986), 3), round(bench.pressure_MPa(2986), 4)
@@ -78,16 +88,25 @@ class Bench:
     regulator: Line = Line(NOMINAL_GAIN_MPA_PER_V, 0.0)
     monitor: Line | None = None
     flex: Line | None = None
-    limit_MPa: float = 0.35
+    limit_MPa: float = PAPER_LIMIT_MPA
+    limit_reason: str = ""
+    full_scale_MPa: float = 5 * NOMINAL_GAIN_MPA_PER_V
     supply_V: float = 5.0
     reference_counts: float | None = None
     gauge: str = ""
     date: str = ""
+    source: str = ""
     calibrated: bool = False
 
     def __post_init__(self) -> None:
         demands = {
             "a limit_MPa above 0 and at most 1": 0 < self.limit_MPa <= 1,
+            f"a limit_reason for a limit_MPa of {self.limit_MPa:g}, above the {PAPER_LIMIT_MPA:g} MPa of the paper": (
+                not self.limit_MPa > PAPER_LIMIT_MPA or bool(self.limit_reason.strip())
+            ),
+            f"a limit_MPa of at most its regulator's full_scale_MPa, {self.full_scale_MPa:g}": (
+                self.limit_MPa <= self.full_scale_MPa
+            ),
             "a supply_V from 4.5 to 5.5": SUPPLY_V[0] <= self.supply_V <= SUPPLY_V[1],
             "reference_counts of a reference from 1.0 to 1.2 V at its supply_V": self.reference_counts is None
             or is_reference(self.reference_counts, self.supply_V),
@@ -103,6 +122,12 @@ class Bench:
         for demand, met in demands.items():
             if not met:
                 raise InputError(f"a bench needs {demand}", where=self.name)
+        if not abs(self.regulator.of(5.0) / self.full_scale_MPa - 1) <= LABEL_SHARE:
+            raise InputError(
+                f"its line makes {self.regulator.of(5.0):.3g} MPa at 5 V, and its regulator's label says {self.full_scale_MPa:.3g} MPa",
+                where=self.name,
+                hint="is it the unit of the readings? else say what the label says: --full-scale-MPa, `full_scale_MPa` in the file",
+            )
 
     @property
     def ceiling_code(self) -> int:
@@ -117,8 +142,10 @@ class Bench:
     @property
     def _ceiling_V(self) -> float:
         volts = self.regulator.inverse(self.limit_MPa)
+        volts = min(volts, (1 + LABEL_CEILING_SHARE) * 5 * self.limit_MPa / self.full_scale_MPa)
         if not self.calibrated:
-            volts = min(volts * self.supply_V / max(self.supply_V, HIGHEST_USB_V), UNCALIBRATED_CEILING_V)
+            volts = min(UNCALIBRATED_SHARE * volts, UNCALIBRATED_CEILING_V)
+            volts *= self.supply_V / max(self.supply_V, HIGHEST_USB_V)
         return min(volts, self.volts(DAC_CODES - 1))
 
     def code(self, pressure_MPa: float) -> int:
@@ -154,6 +181,26 @@ class Bench:
 
     def _floor_code(self, volts: float) -> int:
         return max(0, math.floor(volts / self.supply_V * DAC_CODES + 1e-9))
+
+
+def new_bench(
+    name: str,
+    limit_MPa: float = PAPER_LIMIT_MPA,
+    full_scale_MPa: float = 5 * NOMINAL_GAIN_MPA_PER_V,
+    limit_reason: str = "",
+) -> Bench:
+    """A bench that nobody calibrated yet, by its regulator's label.
+
+    >>> new_bench("new").ceiling_code, new_bench("strong", full_scale_MPa=0.9).ceiling_code
+    (2730, 1456)
+    """
+    return Bench(
+        name,
+        Line(full_scale_MPa / 5, 0.0),
+        limit_MPa=limit_MPa,
+        full_scale_MPa=full_scale_MPa,
+        limit_reason=limit_reason,
+    )
 
 
 def supply_between_V(reference_counts: float) -> tuple[float, float]:

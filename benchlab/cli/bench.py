@@ -5,13 +5,18 @@ from __future__ import annotations
 import json
 from contextlib import closing
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from benchlab.cli.bench_calibrate import calibrate
 from benchlab.cli.bench_monitor import monitor
 from benchlab.cli.bench_options import bench_option, calibration_option, device_of
-from benchlab.errors import BenchlabError, printable
+from benchlab.cli.options import Finite
+from benchlab.errors import BenchlabError, UsageError, printable
+
+if TYPE_CHECKING:
+    from benchlab.bench import Bench
 
 
 @click.group(short_help="Calibrate, vent, watch and flash a pressure bench.")
@@ -73,29 +78,65 @@ def vent(bench: str, calibration: Path | None, as_json: bool) -> None:
     help="Folder that the sketch's folder is put into.",
 )
 @calibration_option
+@click.option(
+    "--full-scale-MPa",
+    "full_scale_MPa",
+    type=Finite("MPA"),
+    help="Of a bench without a calibration: at 5 V, as its regulator's label says. [default: 0.48]",
+)
+@click.option(
+    "--limit-MPa",
+    "limit_MPa",
+    type=Finite("MPA"),
+    help="Of a bench without a calibration. [default: 0.35, which is the most]",
+)
 @click.option("--overwrite", is_flag=True, help="Replace an existing sketch.")
 @click.option("--json", "as_json", is_flag=True, help="One JSON document on standard output.")
-def firmware(out: Path, calibration: Path | None, overwrite: bool, as_json: bool) -> None:
+def firmware(
+    out: Path,
+    calibration: Path | None,
+    full_scale_MPa: float | None,
+    limit_MPa: float | None,
+    overwrite: bool,
+    as_json: bool,
+) -> None:
     """Write the firmware of the Nano as a sketch for the Arduino IDE, with the bench's ceiling in it: the largest code of the DAC that it
-    ever takes. Without a calibration that is the one of a new bench.
+    ever takes. Without a calibration that is the one of a new bench with the paper's regulator, 0.48 MPa at 5 V: say what the label of
+    another says.
 
     \b
-    Example:
+    Examples:
+      benchlab bench firmware --out nano
       benchlab bench firmware --out nano --calibration bench.yaml
     """
-    from benchlab.io.bench_file import read_bench
+    from benchlab.bench import new_bench
+    from benchlab.io.bench_file import limit_notes, read_bench
     from benchlab.workflows.bench_firmware import write_firmware
 
-    found = read_bench(calibration)
+    if calibration is None:
+        new = new_bench("not calibrated")
+        found = new_bench(new.name, limit_MPa or new.limit_MPa, full_scale_MPa or new.full_scale_MPa)
+    elif limit_MPa is None and full_scale_MPa is None:
+        found = read_bench(calibration)
+    else:
+        hint = "leave --limit-MPa and --full-scale-MPa out"
+        raise UsageError("--calibration has its own limit and full scale", hint=hint)
     sketch = write_firmware(out, found, overwrite)
     click.echo(
         f"wrote {printable(sketch)}: at most code {found.ceiling_code}, {found.volts(found.ceiling_code):.3f} V, "
-        f"{found.ceiling_MPa:.4g} MPa by {'the calibration' if found.calibrated else 'the nominal regulator: not calibrated'}",
+        f"{found.ceiling_MPa:.4g} MPa by {'the calibration' if found.calibrated else _by_label(found)}",
         err=True,
     )
+    for note in limit_notes(found):
+        click.echo(f"warning: {printable(note)}", err=True)
     if as_json:
         document = {"outputs": [str(sketch)], "ceiling_code": found.ceiling_code, "ceiling_MPa": found.ceiling_MPa}
         click.echo(json.dumps(document, indent=2))
+
+
+def _by_label(found: Bench) -> str:
+    where = f"{printable(found.source)}, " if found.source else ""
+    return f"{where}a regulator of {found.full_scale_MPa:g} MPa at 5 V by its label and no other: not calibrated"
 
 
 @bench.command(short_help="Serial ports of this computer.")

@@ -7,11 +7,12 @@ from typing import Any
 
 import click
 
-from benchlab.bench import Bench, Line, is_reference
+from benchlab.bench import is_reference, new_bench
 from benchlab.cli.bench_answers import Answers, ask_unit, ask_volts, pressure_of
 from benchlab.cli.bench_options import device_of
 from benchlab.errors import InputError, UsageError, printable
-from benchlab.io.bench_file import SIMULATED, GaugeReading
+from benchlab.io.bench_file import SIMULATED
+from benchlab.io.gauge_readings import GaugeReading
 from benchlab.twin.lines import SUPPLY_V
 from benchlab.workflows.bench_hold import ThreadHold, VirtualHold
 from benchlab.workflows.bench_readings import Level, levels_MPa, take_readings, twin_gauge
@@ -34,7 +35,8 @@ def measure(text: str, gauge: str, options: dict[str, Any]) -> tuple[list[GaugeR
     if kind == "twin" and not simulated:
         raise UsageError(f"there is no gauge {gauge!r} on a twin, which is simulated", hint="give --gauge twin")
     # What is not calibrated yet is driven as a bench that nobody calibrated.
-    nominal = Bench(options["name"] or kind, Line(options["full_scale_MPa"] / 5, 0.0), limit_MPa=options["limit_MPa"])
+    name = options["name"] or kind
+    nominal = new_bench(name, options["limit_MPa"], options["full_scale_MPa"], options["limit_reason"] or "")
     top = options["max_MPa"] or nominal.ceiling_MPa
     if not 0 < top <= nominal.ceiling_MPa:
         raise UsageError(

@@ -39,7 +39,7 @@ calibration_option = click.option(
     "--calibration",
     type=click.Path(path_type=Path),
     metavar="FILE",
-    help="The bench's calibration, by `benchlab bench calibrate`. Without it a real bench is given less than its limit: 0.333 MPa.",
+    help="The bench's calibration, by `benchlab bench calibrate`. Without it a real bench is given less than its limit: 0.32 MPa.",
 )
 
 

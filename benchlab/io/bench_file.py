@@ -1,7 +1,8 @@
 """Bench files: a bench's calibration as YAML, with the readings that it was fitted to.
 
-name, date, gauge, supply_V, reference_counts, limit_MPa, regulator {gain_MPa_per_V, offset_MPa, sd_MPa}, monitor (the same),
-flex {gain_deg_per_V, offset_deg, sd_deg, from}, readings [{volts, pressure_MPa, monitor_V, rising}].
+name, date, gauge, supply_V, reference_counts, limit_MPa, limit_reason, full_scale_MPa, regulator {gain_MPa_per_V, offset_MPa, sd_MPa},
+monitor (the same), flex {gain_deg_per_V, offset_deg, sd_deg, from}, readings [{volts, code, pressure_MPa, monitor_V, rising}]; in place of
+gauge and readings `source`, where the regulator's line was never measured on this bench: it then counts as not calibrated.
 """
 
 from __future__ import annotations
@@ -14,8 +15,9 @@ from typing import Any
 
 from pydantic import Field
 
-from benchlab.bench import Bench, Line
+from benchlab.bench import DAC_CODES, PAPER_LIMIT_MPA, Bench, Line
 from benchlab.errors import InputError
+from benchlab.io.gauge_readings import GaugeReading, check_readings
 from benchlab.io.yaml_file import Document, read_document, write_document
 
 OLDEST_DAYS = 365
@@ -24,19 +26,8 @@ OLDEST_DAYS = 365
 SIMULATED = "simulated"
 """A gauge with this word in its name is none: the pressures were made by a twin or an emulated bench."""
 
-_EDITED_SDS, _EDITED_MPA = 3.0, 0.0005
-"""Readings may lie off the file's line by this many of its sd, root mean square, and by this much more."""
-
-
-@dataclass(frozen=True)
-class GaugeReading:
-    """One pressure read off the gauge. volts: at the regulator's input. monitor_V: NaN where it is not wired. rising: whether
-    the level was reached from below; None where nobody knows."""
-
-    volts: float
-    pressure_MPa: float
-    monitor_V: float = math.nan
-    rising: bool | None = None
+WORST_SD_MPA = 0.005
+"""No calibration is worse: its R² would be below what is refused."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +42,7 @@ class BenchFile:
 class _Pressure(Document):
     gain_MPa_per_V: float
     offset_MPa: float
-    sd_MPa: float | None = Field(default=None, ge=0)
+    sd_MPa: float | None = Field(default=None, ge=0, le=WORST_SD_MPA)
 
 
 class _Flex(Document):
@@ -66,15 +57,19 @@ class _Reading(Document):
     pressure_MPa: float
     monitor_V: float | None = None
     rising: bool | None = None
+    code: int | None = Field(default=None, ge=0, lt=DAC_CODES)
 
 
 class _BenchDocument(Document):
     name: str = Field(min_length=1)
     date: str
-    gauge: str = Field(min_length=1)
+    gauge: str | None = Field(default=None, min_length=1)
+    source: str | None = Field(default=None, min_length=1)
     supply_V: float
     reference_counts: float | None = None
     limit_MPa: float = Bench("").limit_MPa
+    limit_reason: str = ""
+    full_scale_MPa: float = Field(default=Bench("").full_scale_MPa, gt=0)
     regulator: _Pressure
     monitor: _Pressure | None = None
     flex: _Flex | None = None
@@ -95,51 +90,53 @@ def read_bench(path: Path | None) -> Bench:
 def read_bench_file(path: Path) -> BenchFile:
     """The bench in a file, with its readings.
 
-    Raises UsageError for a missing file, InputError for numbers that no bench has, a date that is none, and a regulator's or
-    monitor's line that does not go through the readings beside it.
+    Raises UsageError for a missing file, InputError for numbers that no bench has, a date that is none, readings that are missing or
+    that pressure should not rest on (`fit_regulator`), and a line or a supply that is not the one of the readings beside it.
     """
     found = read_document(path, _BenchDocument)
     flex = found.flex
+    readings = tuple(
+        GaugeReading(r.volts, r.pressure_MPa, _or_nan(r.monitor_V), r.rising, r.code) for r in found.readings
+    )
     try:
+        _check_origin(found)
         bench = Bench(
             name=found.name,
             regulator=_line(found.regulator),
             monitor=None if found.monitor is None else _line(found.monitor),
             flex=None if flex is None else Line(flex.gain_deg_per_V, flex.offset_deg, _or_nan(flex.sd_deg)),
             limit_MPa=found.limit_MPa,
+            limit_reason=found.limit_reason,
+            full_scale_MPa=found.full_scale_MPa,
             supply_V=found.supply_V,
             reference_counts=found.reference_counts,
-            gauge=found.gauge,
+            gauge=found.gauge or "",
             date=_date(found.date).isoformat(),
-            calibrated=True,
+            source=found.source or "",
+            calibrated=found.source is None,
         )
+        if bench.calibrated:
+            check_readings(bench, readings)
     except InputError as error:
         raise InputError(error.what, file=path, where=error.where, hint=error.hint) from error
-    readings = tuple(GaugeReading(r.volts, r.pressure_MPa, _or_nan(r.monitor_V), r.rising) for r in found.readings)
-    _check_line(path, "regulator", bench.regulator, [(r.volts, r.pressure_MPa) for r in readings])
-    if bench.monitor is not None:
-        watched = [(r.monitor_V, r.pressure_MPa) for r in readings if math.isfinite(r.monitor_V)]
-        _check_line(path, "monitor", bench.monitor, watched)
     return BenchFile(bench, readings, flex.source if flex else "")
 
 
-def write_bench(path: Path, bench: Bench) -> None:
-    """Write a calibrated bench without readings. ValueError for one that is not calibrated; else as `write_bench_file`."""
-    write_bench_file(path, BenchFile(bench, flex_from="not told" if bench.flex else ""))
-
-
 def write_bench_file(path: Path, file: BenchFile, comment: str = "") -> None:
-    """Write a bench whole, so that `read_bench_file` gives the same again. InputError where the disk refuses."""
+    """Write a bench whole, so that `read_bench_file` gives the same again. InputError where the disk refuses; ValueError for a bench
+    without readings and without a source of its line, which could not be read again."""
     bench = file.bench
-    if not bench.calibrated:
-        raise ValueError("a bench without a calibration has no file")
+    if not (bench.source or (bench.calibrated and file.readings)):
+        raise ValueError("a bench without readings has no file")
     document: dict[str, Any] = {
         "name": bench.name,
         "date": bench.date,
-        "gauge": bench.gauge,
+        **({"source": bench.source} if bench.source else {"gauge": bench.gauge}),
         "supply_V": float(bench.supply_V),
         **({} if bench.reference_counts is None else {"reference_counts": float(bench.reference_counts)}),
         "limit_MPa": float(bench.limit_MPa),
+        **({"limit_reason": bench.limit_reason} if bench.limit_reason else {}),
+        "full_scale_MPa": float(bench.full_scale_MPa),
         "regulator": _pressure(bench.regulator),
     }
     if bench.monitor is not None:
@@ -162,11 +159,14 @@ def calibration_warnings(bench: Bench, today: datetime.date) -> list[str]:
     >>> calibration_warnings(Bench("a", date="2024-05-01", gauge="Keller LEO 2", calibrated=True), datetime.date(2026, 5, 1))
     ['bench a was calibrated 730 days ago, on 2024-05-01; calibrate it at least once a year']
     """
+    warnings = limit_notes(bench)
     if not bench.calibrated:
+        why = f"its line is from {bench.source!r}, not measured" if bench.source else "no calibration"
+        label = f"; for a regulator of {bench.full_scale_MPa:g} MPa at 5 V and no other"
         return [
-            f"bench {bench.name}: no calibration, at most {bench.ceiling_MPa:.3f} MPa; see `benchlab bench calibrate`"
+            *warnings,
+            f"bench {bench.name}: {why}, at most {bench.ceiling_MPa:.3f} MPa{label}; see `benchlab bench calibrate`",
         ]
-    warnings = []
     age = (today - _date(bench.date)).days if bench.date else None
     if age is None:
         warnings.append(f"bench {bench.name} does not say when it was calibrated")
@@ -177,6 +177,17 @@ def calibration_warnings(bench: Bench, today: datetime.date) -> list[str]:
             f"bench {bench.name} was calibrated {age} days ago, on {bench.date}; calibrate it at least once a year"
         )
     return warnings
+
+
+def limit_notes(bench: Bench) -> list[str]:
+    """That a limit is above the paper's, and why.
+
+    >>> limit_notes(Bench("a", limit_MPa=0.4, limit_reason="three layers", calibrated=True))
+    ["LIMIT 0.4 MPa, above the paper's 0.35 MPa: 'three layers'"]
+    """
+    if bench.limit_MPa <= PAPER_LIMIT_MPA:
+        return []
+    return [f"LIMIT {bench.limit_MPa:g} MPa, above the paper's {PAPER_LIMIT_MPA:g} MPa: {bench.limit_reason!r}"]
 
 
 def is_simulated(bench: Bench) -> bool:
@@ -209,21 +220,24 @@ def _pressure(line: Line) -> dict[str, float]:
 
 
 def _reading(one: GaugeReading) -> dict[str, Any]:
+    code = {} if one.code is None else {"code": int(one.code)}
     monitor = {"monitor_V": float(one.monitor_V)} if math.isfinite(one.monitor_V) else {}
     rising = {} if one.rising is None else {"rising": bool(one.rising)}
-    return {"volts": float(one.volts), "pressure_MPa": float(one.pressure_MPa), **monitor, **rising}
+    return {"volts": float(one.volts), **code, "pressure_MPa": float(one.pressure_MPa), **monitor, **rising}
 
 
-def _check_line(path: Path, what: str, line: Line, readings: list[tuple[float, float]]) -> None:
-    """readings: volts and pressure, which the line should go through."""
-    if not readings:
+def _check_origin(found: _BenchDocument) -> None:
+    """Either a gauge and its readings, or the words where the line is from."""
+    if found.source is not None:
+        if found.gauge is not None or found.readings:
+            raise InputError(
+                "says both `source` and `gauge` or `readings`", hint="`source` is for a line that was not measured"
+            )
         return
-    off = math.sqrt(sum((line.of(volts) - pressure) ** 2 for volts, pressure in readings) / len(readings))
-    most = _EDITED_SDS * (0.0 if math.isnan(line.sd) else line.sd) + _EDITED_MPA
-    if off > most:
-        raise InputError(
-            f"the {what}'s line lies {off:.4f} MPa off the readings in this file, more than {most:.4f} MPa",
-            file=path,
-            where=what,
-            hint="was it edited by hand? calibrate again, or take the readings out",
-        )
+    for key, value in (("gauge", found.gauge), ("readings", found.readings)):
+        if not value:
+            raise InputError(
+                f"has no `{key}`: nothing says what its line rests on",
+                hint="calibrate it with `benchlab bench calibrate`; a line from elsewhere has `source: where it is from` in place of gauge "
+                "and readings, and counts as not calibrated",
+            )

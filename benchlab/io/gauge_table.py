@@ -6,8 +6,8 @@ import math
 from pathlib import Path
 
 from benchlab.errors import InputError
-from benchlab.io.bench_file import GaugeReading
 from benchlab.io.delimited import Table, open_table
+from benchlab.io.gauge_readings import GaugeReading
 from benchlab.io.numbers import NumberReader
 from benchlab.units import parse_column, to_MPa
 

@@ -8,11 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchlab.bench import DAC_CODES, Bench
+from benchlab.bench import DAC_CODES, LABEL_SHARE, Bench
 from benchlab.devices.interface import Device
 from benchlab.errors import BenchError
-from benchlab.io.bench_file import GaugeReading
+from benchlab.io.gauge_readings import GaugeReading
 from benchlab.workflows.bench_hold import Hold
+
+UNLIKE_MPA = 0.005
+"""The second reading may differ from the label by this much more than the label's share: a gauge of 1 MPa and class 0.5."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +57,8 @@ def take_readings(
     codes and the ADC's steps are parts of.
 
     A level above the last is left out, with all above it, where the readings so far foresee more than the limit there. Raises
-    BenchError, after which the bench is vented, for a reading above the limit.
+    BenchError, after which the bench is vented, for a reading above the limit, and at the second for readings that the regulator's label,
+    which bench.regulator is, does not explain: in another unit than was said, as a rule.
     """
     readings: list[GaugeReading] = []
     highest, stands_at = math.inf, 0.0
@@ -82,7 +86,9 @@ def take_readings(
                 f"the gauge shows {pressure:.4g} MPa at {volts:.3f} V, above the limit of {bench.limit_MPa:g} MPa; vented",
                 hint="is it the unit? else give --max-MPa less, or find out what regulator this is",
             )
-        readings.append(GaugeReading(round(volts, 6), round(pressure, 7), round(monitor, 6), rising))
+        readings.append(GaugeReading(round(volts, 6), round(pressure, 7), round(monitor, 6), rising, code))
+        if len(readings) == 2:
+            _check_label(readings[-1], bench)
     return readings
 
 
@@ -105,6 +111,16 @@ def _too_high(readings: Sequence[GaugeReading], levels: Sequence[float], index: 
     # Volts go as the nominal pressures do.
     volts = readings[-1].volts * levels[index] / levels[index - 1]
     return foreseen_MPa(readings, volts) > limit_MPa
+
+
+def _check_label(reading: GaugeReading, bench: Bench) -> None:
+    by_label = bench.regulator.of(reading.volts)
+    if abs(reading.pressure_MPa - by_label) > LABEL_SHARE * by_label + UNLIKE_MPA:
+        raise BenchError(
+            f"the gauge shows {reading.pressure_MPa:.4g} MPa at {reading.volts:.3f} V, and the regulator's label "
+            f"({bench.full_scale_MPa:g} MPa at 5 V) {by_label:.4g}; vented before it went higher",
+            hint="is it the unit of the gauge? else say with --full-scale-MPa what the label says, or look for a leak",
+        )
 
 
 def _mean(values: list[float]) -> float:

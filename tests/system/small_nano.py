@@ -23,7 +23,7 @@ class SmallNano:
     """`with SmallNano() as nano:` answers on nano.port. deaf_to: commands that are not answered. sticks: pressure that a vent leaves.
     counts: of its reference on its supply; None is a firmware that does not measure it."""
 
-    def __init__(self, ceiling_code: int = 2844, deaf_to: tuple[int, ...] = (), sticks_MPa: float = 0.0,
+    def __init__(self, ceiling_code: int = 2730, deaf_to: tuple[int, ...] = (), sticks_MPa: float = 0.0,
                  counts: float | None = None) -> None:  # fmt: skip
         self.ceiling_code, self.deaf_to, self.sticks_MPa, self.counts = ceiling_code, deaf_to, sticks_MPa, counts
         self.code, self.armed, self.silent = 0, False, False

@@ -28,6 +28,11 @@ supply_V: 4.9
 regulator: {gain_MPa_per_V: 0.0965, offset_MPa: -0.001}
 monitor: {gain_MPa_per_V: 0.12, offset_MPa: -0.12}
 flex: {gain_deg_per_V: 40.0, offset_deg: 5.0, from: a test}
+readings:
+- {volts: 0.5, pressure_MPa: 0.04725, monitor_V: 1.39375}
+- {volts: 1.0, pressure_MPa: 0.0955, monitor_V: 1.7958333}
+- {volts: 2.0, pressure_MPa: 0.192, monitor_V: 2.6}
+- {volts: 3.0, pressure_MPa: 0.2885, monitor_V: 3.4041667}
 """
 
 
@@ -119,7 +124,20 @@ def test_firmware_has_the_ceiling_of_the_calibration(benchlab, calibration: Path
     assert f"#define CEILING_CODE {code} " in text and done.json["ceiling_code"] == code
     assert benchlab("bench", "firmware", "--out", tmp_path / "nano").code == 2
     done = benchlab("bench", "firmware", "--out", tmp_path / "nano", "--overwrite")
-    assert done.code == 0 and "not calibrated" in done.err and "code 2844" in done.err
+    assert done.code == 0 and "not calibrated" in done.err and "code 2730" in done.err
+
+
+def test_the_firmware_of_a_new_bench_with_another_regulator(benchlab, tmp_path: Path) -> None:
+    done = benchlab("bench", "firmware", "--out", tmp_path / "nano", "--full-scale-MPa", "0.9")
+    assert done.code == 0 and "code 1456" in done.err and "0.9 MPa at 5 V by its label and no other" in done.err
+    done = benchlab("bench", "firmware", "--out", tmp_path / "b", "--limit-MPa", "0.5", "--full-scale-MPa", "0.9")
+    assert done.code == 3 and "limit_reason" in done.err
+
+
+def test_a_limit_above_the_papers_is_told_with_the_firmware(benchlab, calibration: Path, tmp_path: Path) -> None:
+    calibration.write_text(BENCH.replace("supply_V", "limit_MPa: 0.4\nlimit_reason: three layers\nsupply_V"))
+    done = benchlab("bench", "firmware", "--out", tmp_path / "nano", "--calibration", calibration)
+    assert done.code == 0 and "LIMIT 0.4 MPa, above the paper's 0.35 MPa: 'three layers'" in done.err
 
 
 def test_ports_are_listed(benchlab, monkeypatch) -> None:
@@ -225,7 +243,7 @@ COUNTS = 1.1 * 1024 / 4.9
 
 
 def typist(nano: SmallNano, folder: Path, *more: str) -> Typist:
-    arguments = ("--bench", f"serial:{nano.port}", "--gauge", "Keller LEO 2", "--points", "4", "--max-MPa", "0.16",
+    arguments = ("--bench", f"serial:{nano.port}", "--gauge", "Keller LEO 2", "--points", "4", "--max-MPa", "0.29",
                  "--settle-s", "0.1")  # fmt: skip
     return Typist(folder, *arguments, *more)
 
@@ -312,7 +330,7 @@ def test_a_killed_calibration_is_vented_by_the_firmware(tmp_path: Path) -> None:
 def test_a_firmware_with_a_lower_ceiling_is_calibrated_below_it(tmp_path: Path) -> None:
     with SmallNano(ceiling_code=1300) as nano:
         lab = Typist(tmp_path, "--bench", f"serial:{nano.port}", "--gauge", "a", "--points", "4", "--settle-s", "0.1",
-                     "--supply-V", "4.9", "--unit", "kPa")  # fmt: skip
+                     "--supply-V", "4.9", "--unit", "kPa", "--limit-MPa", "0.18")  # fmt: skip
         lab.wait_for("firmware 1.0.0 does not measure its supply")
         for number in range(1, 8):
             lab.wait_for(f"{number}/7")
@@ -385,7 +403,7 @@ def test_the_bench_file_of_the_guide_reads(tmp_path: Path) -> None:
     (text,) = re.findall(r"```yaml\n(.*?)```", guide, re.DOTALL)
     (tmp_path / "bench.yaml").write_text(text, encoding="utf-8")
     file = read_bench_file(tmp_path / "bench.yaml")
-    assert file.flex_from == "run 12 with video" and len(file.readings) == 1
+    assert file.flex_from == "run 12 with video" and len(file.readings) == 6
 
 
 @pytest.mark.parametrize(
@@ -393,6 +411,9 @@ def test_the_bench_file_of_the_guide_reads(tmp_path: Path) -> None:
     [
         (("--gauge", "a"), "either --bench or --readings"),
         (("--gauge", " ", "--bench", "twin"), "--gauge is empty"),
+        (("--gauge", "twin", "--bench", "twin", "--limit-MPa", "0.4"), "say why with --limit-reason"),
+        (("--gauge", "twin", "--bench", "twin", "--limit-MPa", "0.9", "--limit-reason", "a"), "label ends at 0.48"),
+        (("--gauge", "a", "--readings", "x.csv", "--supply-V", "5", "--date", "2090-05-31"), "in the future"),
         (("--gauge", "a", "--readings", "x.csv"), "--supply-V"),
         (("--gauge", "a", "--readings", "x.csv", "--supply-V", "5", "--unit", "kPa"), "--unit"),
         (("--gauge", "a", "--bench", "twin", "--supply-V", "3.3"), "--supply-V"),

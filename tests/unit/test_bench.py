@@ -6,7 +6,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from benchlab.bench import DAC_CODES, NOMINAL_GAIN_MPA_PER_V, Bench, LimitError, Line
+from benchlab.bench import DAC_CODES, NOMINAL_GAIN_MPA_PER_V, Bench, LimitError, Line, new_bench
 from benchlab.errors import InputError
 
 TINY_MPA = 1e-9
@@ -14,11 +14,22 @@ TINY_MPA = 1e-9
 
 @st.composite
 def benches(draw: st.DrawFn) -> Bench:
-    limit = draw(st.floats(0.01, 1.0))
-    gain = draw(st.floats(0.001, 1.0))
-    offset = draw(st.floats(-0.5, 0.1 * limit))
+    gain = draw(st.floats(0.01, 1.0))
+    offset = draw(st.floats(-2 * gain, 0.05 * gain))
+    full_scale = (5 * gain + offset) * draw(st.floats(0.92, 1.08))
+    limit = draw(st.floats(0.1, 1.0)) * min(1.0, full_scale)
+    assume(offset <= 0.1 * limit and offset >= -1)
     supply, calibrated = draw(st.floats(4.5, 5.5)), draw(st.booleans())
-    return Bench("any", Line(gain, offset), limit_MPa=limit, supply_V=supply, calibrated=calibrated)
+    line = Line(gain, offset)
+    return Bench(
+        "any",
+        line,
+        limit_MPa=limit,
+        limit_reason="a test",
+        full_scale_MPa=full_scale,
+        supply_V=supply,
+        calibrated=calibrated,
+    )
 
 
 @given(benches(), st.floats(0, 1))
@@ -50,7 +61,8 @@ def test_without_a_calibration_the_limit_holds_whatever_the_usb_supply(bench: Be
     assume(not bench.calibrated)
     assert bench.volts(bench.ceiling_code) <= 3.50
     true_volts = true_supply_V * bench.ceiling_code / DAC_CODES
-    if bench.ceiling_code:
+    assert true_volts <= 3.50 + TINY_MPA or bench.supply_V > 5.25
+    if bench.ceiling_code and bench.supply_V <= 5.25:
         assert bench.regulator.of(true_volts) <= bench.limit_MPa + TINY_MPA
 
 
@@ -80,13 +92,13 @@ def test_a_measured_supply_changes_the_code_so_that_the_pressure_stays(supply_V:
 
 def test_without_a_calibration_less_is_given() -> None:
     bench = Bench("new")
-    assert bench.ceiling_code == 2844  # as if the supply were 5.25 V
-    assert bench.ceiling_MPa == pytest.approx(0.35 * 5 / 5.25)
+    assert bench.ceiling_code == 2730  # 0.35 MPa on 5.25 V by a regulator of 0.5 MPa at 5 V
+    assert pytest.approx(0.35, abs=0.0001) == 0.1 * 5.25 * 2730 / DAC_CODES
+    assert bench.ceiling_MPa == pytest.approx(0.32)
     with pytest.raises(LimitError, match="calibrate the bench"):
         bench.code(0.35)
-    assert Bench("strong", limit_MPa=0.9).volts(Bench("strong", limit_MPa=0.9).ceiling_code) == pytest.approx(
-        3.5, abs=0.002
-    )
+    weak = new_bench("weak", limit_MPa=0.2, full_scale_MPa=0.2)
+    assert weak.volts(weak.ceiling_code) == pytest.approx(3.5 * 5 / 5.25, abs=0.002)
 
 
 @pytest.mark.parametrize(
@@ -95,6 +107,10 @@ def test_without_a_calibration_less_is_given() -> None:
         ({"limit_MPa": 0.0}, "limit_MPa"),
         ({"limit_MPa": math.nan}, "limit_MPa"),
         ({"limit_MPa": 350.0}, "limit_MPa"),
+        ({"limit_MPa": 0.36}, "limit_reason"),
+        ({"limit_MPa": 0.5, "limit_reason": "a test"}, "full_scale_MPa"),
+        ({"regulator": Line(0.084, 0.0)}, "label"),
+        ({"regulator": Line(0.108, 0.0)}, "label"),
         ({"supply_V": 3.3}, "supply_V"),
         ({"supply_V": math.nan}, "supply_V"),
         ({"regulator": Line(-0.096, 0.0)}, "gain"),

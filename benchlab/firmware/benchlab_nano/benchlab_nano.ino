@@ -24,7 +24,7 @@
 
 /* ---- Settings of this bench; `benchlab bench firmware` writes the ceiling of yours ---- */
 
-#define CEILING_CODE 2844    /* codes above are refused: 2844 of 4096 is 3.472 V at 5 V, and 3.645 V at the 5.25 V that USB may have */
+#define CEILING_CODE 2730    /* codes above are refused: 2730 of 4096 is 3.50 V at the 5.25 V that USB may have, 0.35 MPa at 0.1 MPa/V */
 #define SLEW_CODES_PER_MS 40 /* rises only; falling is never slowed */
 #define SILENCE_MS 200       /* armed, and nothing valid heard for this long: vent */
 #define TRIGGER_MS 20        /* length of the camera's pulse */

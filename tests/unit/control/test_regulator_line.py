@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from benchlab.control.regulator_line import check_full_scale, fit_regulator
+from benchlab.control.regulator_line import fit_regulator
 from benchlab.errors import InputError
 
 LEVELS = np.linspace(0.35, 3.4, 8)
@@ -42,17 +42,16 @@ def test_a_bow_is_told_with_its_height() -> None:
     assert any("not straight, +4" in w or "not straight, +3.9" in w for w in fit.warnings)
 
 
-@pytest.mark.parametrize(("gain", "label_MPa", "fits"), [
-    (0.0965, 0.48, True), (0.0965, 0.5, True), (0.18, 0.9, True),
-    (0.18, 0.48, False), (0.014, 0.48, False), (0.96, 0.48, False),
-])  # fmt: skip
-def test_the_label_must_fit(gain: float, label_MPa: float, fits: bool) -> None:
-    line = fit_regulator(VOLTS, readings(gain=gain), RISING, "regulator").line
-    if fits:
-        check_full_scale(line, label_MPa)
-    else:
-        with pytest.raises(InputError, match="the unit of the readings"):
-            check_full_scale(line, label_MPa)
+@pytest.mark.parametrize("off", [0.0025, -0.0025])
+def test_what_a_gauge_may_err_by_is_told_and_not_refused(off: float) -> None:
+    """3 kPa: class 0.5 of 0.6 MPa."""
+    typed = readings(sd=0.0002)
+    typed[4] += off
+    (told,) = fit_regulator(VOLTS, typed, RISING, "regulator").warnings
+    assert f"reading 5, {typed[4]:.4g} MPa" in told
+    typed[4] += off
+    with pytest.raises(InputError, match="reading 5"):
+        fit_regulator(VOLTS, typed, RISING, "regulator")
 
 
 def test_a_mistyped_reading_is_named() -> None:

@@ -45,3 +45,10 @@ def test_a_sketch_without_a_ceiling_is_never_written(monkeypatch: pytest.MonkeyP
     with pytest.raises(ValueError, match="0 ceilings"):
         write_firmware(tmp_path / "nano", BENCH)
     assert not list(tmp_path.glob("nano/benchlab_nano/*"))
+
+
+@pytest.mark.parametrize("gauge", ["simulated gauge of the twin", "simulated bench (emulated): a", "none: simulated"])
+def test_no_sketch_rests_on_a_calibration_of_a_twin(tmp_path: Path, gauge: str) -> None:
+    with pytest.raises(InputError, match="bench of metal"):
+        write_firmware(tmp_path / "nano", Bench("a", gauge=gauge, calibrated=True))
+    assert not list(tmp_path.iterdir())

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from benchlab.bench import Bench, Line
-from benchlab.errors import BenchError
+from benchlab.errors import BenchError, InputError
+from benchlab.io.gauge_readings import GaugeReading
+from benchlab.workflows import bench_readings
 from benchlab.workflows.bench_calibrate import CalibrationSettings, calibrate
 from benchlab.workflows.bench_hold import VirtualHold
 from benchlab.workflows.bench_readings import Level, levels_MPa, take_readings
@@ -35,10 +37,25 @@ def test_the_true_regulator_and_monitor_are_found(tmp_path) -> None:
     assert found["ceiling_code"] == int((0.35 + 0.001) / 0.0965 / 4.9 * 4096)
 
 
+def test_readings_in_another_unit_end_it_at_the_second_level() -> None:
+    """psi typed as kPa: a seventh; the bench would be asked for seven times its limit."""
+    device = SmallBench(NEW)
+    levels = []
+
+    def psi_as_kPa(level: Level) -> float:
+        levels.append(level.number)
+        return device.pressure_MPa / 0.00689476 / 1000
+
+    with pytest.raises(BenchError, match="label") as ended:
+        read(device, gauge=psi_as_kPa)
+    assert levels == [1, 2] and not device.armed and "unit" in str(ended.value)
+    assert device.highest_code <= NEW.code(NEW.ceiling_MPa / 4)
+
+
 def test_a_wrong_supply_scales_the_volts_and_leaves_pressure_per_code(tmp_path) -> None:
     """The file's gain and supply belong together: codes, which are what the bench is given, come out the same."""
     codes = []
-    for supply_V in (4.9, 5.1):
+    for supply_V in (4.9, 4.8):
         readings, _ = read(SmallBench(NEW), supply_V)
         out = tmp_path / f"{supply_V}.yaml"
         codes.append(
@@ -48,15 +65,39 @@ def test_a_wrong_supply_scales_the_volts_and_leaves_pressure_per_code(tmp_path) 
 
 
 def test_a_limit_far_above_the_readings_is_told(tmp_path) -> None:
-    readings, _ = read(SmallBench(NEW))
-    low = [r for r in readings if r.pressure_MPa < 0.25]
+    readings, _ = read(SmallBench(NEW), points=16)
+    low = [r for r in readings if r.pressure_MPa < 0.3]
     settings = CalibrationSettings("b", "g", 4.9, 0.35, "2026-05-31")
     assert not calibrate(readings, settings, tmp_path / "whole.yaml")["warnings"]
     assert "extrapolated" in calibrate(low, settings, tmp_path / "low.yaml")["warnings"][0]
 
 
-def test_a_stronger_regulator_is_not_driven_across_the_limit() -> None:
-    device = SmallBench(NEW, Line(0.18, 0.0), 5.0)  # 0.9 MPa at 5 V: the nominal top level would be 0.63 MPa
+def test_a_limit_beyond_what_was_read_is_refused(tmp_path) -> None:
+    readings, _ = read(SmallBench(NEW))
+    settings = CalibrationSettings("b", "g", 4.9, 0.4, "2026-05-31", full_scale_MPa=0.5, limit_reason="a test")
+    low = [r for r in readings if r.pressure_MPa < 0.2]
+    with pytest.raises(InputError, match="beyond"):
+        calibrate(readings, settings, tmp_path / "b.yaml")
+    with pytest.raises(InputError, match="25 % beyond"):
+        calibrate(low, CalibrationSettings("b", "g", 4.9, 0.35, "2026-05-31"), tmp_path / "b.yaml")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_regulator_below_its_label_is_not_given_much_more_volts_than_the_label_says(tmp_path) -> None:
+    """A gauge that shows 9 % too little would else have the bench at 0.385 MPa."""
+    device = SmallBench(NEW, Line(0.096, 0.0), 5.0)
+    readings, _ = read(device, 5.0, gauge=lambda level: 0.91 * device.pressure_MPa)
+    found = calibrate(readings, CalibrationSettings("b", "g", 5.0, 0.35, "2026-05-31"), tmp_path / "b.yaml")
+    assert 0.355 < device.true.of(5.0 * found["ceiling_code"] / 4096) <= 1.03 * 0.35
+    assert "9 % less than its label" in found["warnings"][0]
+    with pytest.raises(InputError, match="label"):
+        low = [GaugeReading(r.volts, 0.86 / 0.91 * r.pressure_MPa) for r in readings]
+        calibrate(low, CalibrationSettings("b", "g", 5.0, 0.3, "2026-05-31"), tmp_path / "c.yaml")
+
+
+def test_a_stronger_regulator_is_not_driven_across_the_limit(monkeypatch) -> None:
+    monkeypatch.setattr(bench_readings, "_check_label", lambda *_: None)  # behind that, another hold
+    device = SmallBench(NEW, Line(0.18, 0.0), 5.0)  # 0.9 MPa at 5 V: the nominal top level would be 0.6 MPa
     readings, told = read(device, 5.0)
     assert device.true.of(5.0 * device.highest_code / 4096) <= 0.35
     assert max(r.pressure_MPa for r in readings) <= 0.35
@@ -65,7 +106,8 @@ def test_a_stronger_regulator_is_not_driven_across_the_limit() -> None:
 
 
 @pytest.mark.parametrize("gain", np.linspace(0.02, 0.5, 13))
-def test_no_regulator_is_driven_across_the_limit_once_its_first_level_is_read(gain: float) -> None:
+def test_no_regulator_is_driven_across_the_limit_once_its_first_level_is_read(gain: float, monkeypatch) -> None:
+    monkeypatch.setattr(bench_readings, "_check_label", lambda *_: None)
     device = SmallBench(NEW, Line(gain, 0.0), 5.25)
     first = device.true.of(5.25 * NEW.code(NEW.ceiling_MPa / 8) / 4096)
     if first > 0.35:

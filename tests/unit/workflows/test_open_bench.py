@@ -7,9 +7,9 @@ import pytest
 
 from benchlab.bench import Bench
 from benchlab.errors import InputError, UsageError
-from benchlab.io.bench_file import write_bench
 from benchlab.io.journal import JournalWriter
 from benchlab.workflows.open_bench import Spec, bench_doubts, bench_of, open_bench, spec_of, twin_of
+from tests.benches import write_bench
 
 
 def test_a_bench_is_named_by_kind_and_place() -> None:
