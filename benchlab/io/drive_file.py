@@ -144,6 +144,16 @@ def trigger_times_s(journal: Journal) -> FloatArray:
     return np.asarray(samples["time_s"][np.concatenate([*first, np.empty(0, int)]).astype(int)], dtype=float)
 
 
+def unfit_words(journal: Journal) -> str:
+    """Why a run is no whole measurement, "" where it is one: it was not completed, or the actuator kept its air."""
+    stop = journal.stop
+    if stop is None:
+        return "the run was not completed: no record of its end"
+    if stop.get("reason") != "completed":
+        return f"the run was not completed: {stop.get('reason')}"
+    return "the actuator was not empty after its vent" if stop.get("empty") is False else ""
+
+
 def made_on(header: Mapping[str, Any]) -> str:
     """The kind of bench that a run, or the run that it replays, was made on.
 

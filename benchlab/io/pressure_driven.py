@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchlab.io.drive_file import origin, read_drive_file, trigger_times_s
+from benchlab.io.drive_file import origin, read_drive_file, trigger_times_s, unfit_words
 from benchlab.units import FloatArray
 
 
@@ -27,6 +27,8 @@ def read_driven_pressure(path: Path) -> DrivenPressure:
     warnings = [f"{path.name}: lost {words}" for words in run.losses_told]
     if words := origin(run.header):
         warnings.append(f"{path.name} is no run on a bench of metal: {words}")
+    if words := unfit_words(run):
+        warnings.append(f"{path.name}: {words}")
     field = "pressure_MPa"
     if not np.isfinite(run.samples[field]).any():
         field = "command_MPa"

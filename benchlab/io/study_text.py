@@ -39,7 +39,7 @@ class DesignDraft:
 @dataclass(frozen=True)
 class StudyDraft:
     """What a new study file says. analysis: of all recordings. remarks: on its sets. unused: files and why they are not in it.
-    pressure_told: whether pressure_MPa was told, or is the default."""
+    pressures: of films, the file with their pressure. pressure_told: whether pressure_MPa was told, or is the default."""
 
     title: str
     pressure_MPa: float
@@ -48,13 +48,16 @@ class StudyDraft:
     sets: Sequence[StudySet] = ()
     notes: str = ""
     unused: Sequence[tuple[str, str]] = ()
+    pressures: Mapping[str, str] = field(default_factory=dict)
     pressure_told: bool = True
 
     @property
     def pressure_known(self) -> bool:
         """Whether it tells the pressure in its videos, or has none."""
         files = (file for design in self.designs for made in design.samples.values() for file in made)
-        return bool({"ramp", "pressure"} & self.analysis.keys()) or all(kind_of(PurePath(f)) != "video" for f in files)
+        return bool({"ramp", "pressure"} & self.analysis.keys()) or all(
+            file in self.pressures or kind_of(PurePath(file)) != "video" for file in files
+        )
 
 
 def write_study(path: Path, draft: StudyDraft) -> Study:
@@ -96,7 +99,7 @@ def study_text(draft: StudyDraft, name: str = "study.yaml") -> str:
         ]
     lines += ["", "designs:"]
     for design in draft.designs:
-        lines += _design(design)
+        lines += _design(design, draft.pressures)
     if draft.sets:
         lines += [
             "",
@@ -117,7 +120,13 @@ def _analysis(settings: Mapping[str, object]) -> Iterator[str]:
         yield from (f"  {name}: {_value(value)}" for name, value in settings.items())
 
 
-def _design(design: DesignDraft) -> Iterator[str]:
+def _recording(file: str, pressures: Mapping[str, str]) -> str:
+    if file not in pressures:
+        return _scalar(file)
+    return f"{{file: {_scalar(file)}, analysis: {{pressure: {_scalar(pressures[file])}}}}}"
+
+
+def _design(design: DesignDraft, pressures: Mapping[str, str]) -> Iterator[str]:
     yield f"  {_scalar(design.name)}:"
     if design.shell is None:
         yield "    # shell: {tw_mm: 3, slw_mm: 10}  <- its dimensions are not known from its name"
@@ -127,7 +136,9 @@ def _design(design: DesignDraft) -> Iterator[str]:
         yield f"    simulated: {_scalar(design.simulated)}"
     yield "    samples:"
     for name, files in design.samples.items():
-        yield f"      {_scalar(name)}: {_value(files[0] if len(files) == 1 else list(files))}"
+        made = [_recording(file, pressures) for file in files]
+        plain = len(files) == 1 and files[0] not in pressures
+        yield f"      {_scalar(name)}: {made[0] if plain else '[' + ', '.join(made) + ']'}"
     if not design.force:
         return
     yield "    force:"

@@ -12,6 +12,7 @@ from benchlab.io.delimited import open_table
 from benchlab.io.drive_file import SCHEMA as DRIVE
 from benchlab.io.force_file import SCHEMA as FORCE
 from benchlab.io.hdf5 import open_hdf5
+from benchlab.io.nexus import schema_of
 from benchlab.io.response_file import SCHEMA as RESPONSE
 from benchlab.io.run_file import SCHEMA as RUN
 from benchlab.io.stills import SUFFIXES as PICTURES
@@ -27,18 +28,24 @@ MOST_FILES = 20_000
 TRUTH = ".truth.csv"
 """Ends the name of the table that a run on a twin leaves of what was really there."""
 
+FILM = ".film"
+"""Ends the stem of the film of a run, as `NAME.film.mp4` beside `NAME.h5`."""
+
 WRITTEN = frozenset([RECORDINGS, "tables", "figures"])
 """Folders that a report writes beside its page."""
 
 
 @dataclass
 class Contents:
-    """Paths under the folder, in natural order. tables: without angles, so force exports by their names. unused: with the reason."""
+    """Paths under the folder, in natural order. tables: without angles, so force exports by their names. unused: with the reason.
+    pressures: of a film, the drive file of the run that it is of.
+    """
 
     recordings: list[Path] = field(default_factory=list)
     tables: list[Path] = field(default_factory=list)
     simulated: list[Path] = field(default_factory=list)
     unused: list[tuple[Path, str]] = field(default_factory=list)
+    pressures: dict[Path, Path] = field(default_factory=dict)
 
 
 def look_into(folder: Path) -> Contents:
@@ -62,6 +69,9 @@ def look_into(folder: Path) -> Contents:
             found.unused.append((path, "the truth of a twin, which nobody measured"))
         elif path.is_dir() or suffix in VIDEOS:
             found.recordings.append(path)
+        elif suffix in RUN_SUFFIXES and (film := videos.get(stem) or videos.get(stem + FILM)) and _is_drive(path):
+            found.pressures[film] = path
+            runs[stem] = path
         elif suffix in RUN_SUFFIXES | TABLE_SUFFIXES and (video := videos.get(stem)):
             found.unused.append((path, f"named as {video.name}: taken for its analysis"))
         elif suffix in RUN_SUFFIXES:
@@ -95,6 +105,13 @@ def _paths(folder: Path, found: Contents) -> Iterator[Path]:
             path = Path(at, name)
             if path.suffix.lower() in VIDEOS | RUN_SUFFIXES | TABLE_SUFFIXES and path.is_file():
                 yield path
+
+
+def _is_drive(path: Path) -> bool:
+    try:
+        return schema_of(path) == DRIVE.name
+    except BenchlabError:
+        return False
 
 
 def _sort_hdf5(path: Path, found: Contents) -> None:

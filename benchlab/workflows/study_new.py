@@ -18,7 +18,7 @@ from benchlab.io.stills import natural_key
 from benchlab.io.study_file import STUDY_FILE, StudyDesign, StudySimulated
 from benchlab.io.study_parts import named
 from benchlab.io.study_text import DesignDraft, StudyDraft, write_study
-from benchlab.workflows.study_folder import Contents, look_into
+from benchlab.workflows.study_folder import FILM, Contents, look_into
 from benchlab.workflows.study_pattern import NameParts, NamePattern, choose_pattern
 from benchlab.workflows.study_sets import proposed_sets
 from benchlab.workflows.study_simulated import simulated_of
@@ -115,6 +115,11 @@ def _draft(folder: Path, base: Path, contents: Contents, wish: NewStudy) -> tupl
         what = f"no recording is named as {pattern.text}: there are {', '.join(map(repr, list(names.values())[:3]))}"
         raise InputError(what, file=folder, hint="give another --pattern")
     force = _force(contents.tables, folder, pattern, samples, unused)
+    pressures = {_relative(film, base): _relative(drive, base) for film, drive in contents.pressures.items()}
+    if wish.ramp or wish.pressure:
+        told = "--ramp" if wish.ramp else "--pressure"
+        unused += [(drive, f"{told} tells the pressure of {film.name}") for film, drive in contents.pressures.items()]
+        pressures = {}
     designs = []
     for name in sorted(samples, key=natural_key):
         made = {
@@ -137,6 +142,7 @@ def _draft(folder: Path, base: Path, contents: Contents, wish: NewStudy) -> tupl
         analysis=analysis,
         designs=designs,
         sets=proposed_sets({d.name: d.shell for d in designs if d.shell}),
+        pressures=pressures,
         unused=sorted((_relative(path, base), why) for path, why in unused),
     )
 
@@ -198,7 +204,7 @@ def _simulated(files: Sequence[Path], name: str, shell: ShellDesign | None) -> P
 
 def _name(path: Path, folder: Path) -> str:
     relative = path.relative_to(folder)
-    return (relative if path.is_dir() else relative.with_suffix("")).as_posix()
+    return relative.as_posix() if path.is_dir() else relative.with_suffix("").as_posix().removesuffix(FILM)
 
 
 def _relative(path: Path, base: Path) -> str:

@@ -12,7 +12,7 @@ import numpy as np
 
 from benchlab.io.angle_table import AngleTable, is_series, read_angle_table
 from benchlab.io.drive_file import SCHEMA as DRIVE
-from benchlab.io.drive_file import is_replay, made_on, origin, read_drive_file, sensor_sd
+from benchlab.io.drive_file import is_replay, made_on, origin, read_drive_file, sensor_sd, unfit_words
 from benchlab.io.drive_gaps import gaps_of
 from benchlab.io.journal import Journal
 from benchlab.io.nexus import schema_of
@@ -91,20 +91,10 @@ def _of_drive(path: Path, target: Target) -> Readings:
     return replace(
         _by_flex(run, target),
         origin=kind if kind in NOT_MEASURED else "",
-        unfit=_unfit(run),
+        unfit=unfit_words(run),
         never="a replay of a run is not another measurement" if is_replay(run.header) else "",
         content=content,
     )
-
-
-def _unfit(run: Journal) -> str:
-    """Why a run does not count, "" where it does."""
-    stop = run.stop
-    if stop is None:
-        return "the run was not completed: no record of its end"
-    if stop.get("reason") != "completed":
-        return f"the run was not completed: {stop.get('reason')}"
-    return "the actuator was not empty after its vent" if stop.get("empty") is False else ""
 
 
 def _by_flex(run: Journal, target: Target) -> Readings:
@@ -113,7 +103,7 @@ def _by_flex(run: Journal, target: Target) -> Readings:
     origin_told = origin(run.header)
     warnings = [f"no run on a bench of metal: {origin_told}"] if origin_told else []
     warnings += ["its angle is by the flex sensor, not from a film"]
-    if unfit := _unfit(run):
+    if unfit := unfit_words(run):
         warnings.append(unfit)
     warnings += [f"lost {words}" for words in run.losses_told]
     warnings += [gap.words for gap in gaps_of(run)]

@@ -10,6 +10,7 @@ from benchlab.io.journal import read_journal
 from benchlab.io.study_file import read_study
 from benchlab.workflows.study_check import check_study
 from benchlab.workflows.study_folder import look_into
+from benchlab.workflows.study_new import NewStudy, new_study
 from benchlab.workflows.study_readings import Target, read_run
 from benchlab.workflows.study_values import collect
 from tests.unit.io.journals import header_of, samples_of, write_journal
@@ -141,3 +142,20 @@ def test_what_was_not_measured_and_a_mixture_are_told_by_the_check(tmp_path):
     assert notes[0]["why"].startswith(
         "MIXED ORIGINS: of the recordings that count, 1 measured, 2 simulated on the twin"
     )
+
+
+def test_a_film_beside_its_run_has_its_pressure_from_it(tmp_path):
+    for name in ("a_s1", "a_s2"):
+        drive(tmp_path, name)
+        (tmp_path / f"{name}.csv").write_text("time_s,angle_deg\n0,1\n")
+    (tmp_path / "a_s1.film.mp4").write_bytes(b"film")
+    (tmp_path / "a_s2.mp4").write_bytes(b"film")
+    told = new_study(tmp_path, None, NewStudy())
+    assert told["designs"][0]["samples"] == {"s1": ["a_s1.film.mp4"], "s2": ["a_s2.mp4"]} and told["pressure_known"]
+    assert {each["file"] for each in told["unused"]} == {"a_s1.csv", "a_s2.csv"}
+    (design,) = read_study(tmp_path / "study.yaml").designs
+    pressures = [sample.recordings[0].analysis["pressure"] for sample in design.samples]
+    assert pressures == [str(tmp_path / "a_s1.h5"), str(tmp_path / "a_s2.h5")]
+    told = new_study(tmp_path, None, NewStudy(ramp="0:0.35:2.5"), overwrite=True)
+    assert {"file": "a_s1.h5", "why": "--ramp tells the pressure of a_s1.film.mp4"} in told["unused"]
+    assert "pressure" not in read_study(tmp_path / "study.yaml").designs[0].samples[0].recordings[0].analysis
