@@ -22,6 +22,7 @@ from benchlab.runner.run import execute
 from benchlab.runner.stop import Stop, signals_to
 from benchlab.runner.tick import Tick
 from benchlab.runner.undisturbed import undisturbed
+from benchlab.workflows.bench_straight import check_straight
 from benchlab.workflows.bench_supply import check_supply
 from benchlab.workflows.bench_zero import check_zero
 from benchlab.workflows.open_bench import open_bench
@@ -45,8 +46,8 @@ def drive(prepared: Prepared, stop: Stop, on_tick: Callable[[Tick], None] | None
     """Open the bench, begin the journal, execute the plan, vent, let go. Signals go to `stop` meanwhile.
 
     Whatever happens after the bench has answered is told by the end of what is returned. Raises BenchError where the bench cannot be
-    opened, gives less than the plan asks for, is not empty or not on its supply, and UsageError or InputError where the journal cannot be
-    begun; then nothing was armed and no file is left.
+    opened, gives less than the plan asks for, is not empty, not straight or not on its supply, and UsageError or InputError where the
+    journal cannot be begun; then nothing was armed and no file is left.
     """
     path = prepared.path(".journal")
     with signals_to(stop):
@@ -59,6 +60,7 @@ def drive(prepared: Prepared, stop: Stop, on_tick: Callable[[Tick], None] | None
                 check_supply(about, prepared.bench)
             if prepared.spec.kind == "serial":
                 check_zero(device, prepared.bench, RealClock())
+                check_straight(device, prepared.bench, RealClock(), prepared.limits.rest_deg)
             journal = JournalWriter(path, header_of(prepared, about))
             try:
                 end, went_first = _executed(prepared, device, journal, stop, on_tick)
