@@ -89,6 +89,17 @@ def test_a_supply_that_has_risen_is_refused_before_anything_is_armed(
     assert nano.highest_code == 0 and not list(tmp_path.glob("r.*"))
 
 
+def test_a_flex_line_with_a_wrong_sign_is_refused_before_anything_is_armed(
+    benchlab, nano: SmallNano, files, tmp_path: Path
+) -> None:
+    """The sensor gives 1 V at rest."""
+    line = "flex: {gain_deg_per_V: 66.7, offset_deg: 66.7, sd_deg: 0.1, from: a test}\n"
+    files[0].write_text(CALIBRATION.format(date="2026-05-31", supply_V=4.9) + line)
+    done = benchlab(*words(nano, *files))
+    assert done.code == 5 and "reads 133." in done.err and "offset_deg" in done.err
+    assert nano.highest_code == 0 and not list(tmp_path.glob("r.*"))
+
+
 def test_without_a_monitor_the_nanos_own_measurement_shows_a_supply_that_has_risen(
     benchlab, nano: SmallNano, files, tmp_path: Path
 ) -> None:
