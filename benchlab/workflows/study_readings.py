@@ -22,6 +22,7 @@ from benchlab.io.table import read_series_csv
 from benchlab.units import FloatArray
 from benchlab.vision.loading import Cycle, Trace, angle_at, find_cycles, rising_curve
 from benchlab.vision.series import SURE_FLAGS
+from benchlab.workflows.drawn_film import TWIN_CAMERA
 
 CURVE_POINTS = 36
 """Pressures of a curve, from 0 to the study's."""
@@ -31,9 +32,6 @@ STATED = "table"
 
 NOT_MEASURED = ("twin", "emulated")
 """Benches on which nothing is measured."""
-
-TWIN_CAMERA = "camera of a simulated bench (twin)"
-"""What a film that was drawn of a twin says of itself."""
 
 NO_PRESSURE = "its pressure is not known"
 

@@ -14,7 +14,7 @@ from benchlab.twin.settings import TwinSettings
 from benchlab.twin.truth import Truth
 from benchlab.units import FloatArray
 from benchlab.vision.synthetic import Scene
-from benchlab.workflows.drawn_film import Progress, write_drawn_film
+from benchlab.workflows.drawn_film import TWIN_CAMERA, Progress, write_drawn_film
 
 STREAM = 3
 """Of the seed's random numbers: 1 and 2 are the sensors'."""
@@ -46,9 +46,9 @@ def write_twin_film(
     scene = twin_scene(settings)
     scale = settings.effect(CameraScale)
     told = settings.length_mm / scene.length_px * (1.0 if scale is None else scale.factor)
-    comment = f"camera of a simulated bench (twin), seed {settings.seed}; starts at {times[0]:.6f} s of the run; {told:.6g} mm per pixel"
+    comment = f"{TWIN_CAMERA}, seed {settings.seed}; starts at {times[0]:.6f} s of the run; {told:.6g} mm per pixel"
     rng = np.random.default_rng([settings.seed, STREAM])
-    write_drawn_film(path, scene, angles, rng, settings.camera.frames_per_s, comment, progress)
+    write_drawn_film(path, scene, angles, rng, settings.camera.frames_per_s, comment, progress, TWIN_CAMERA)
     return TwinFilm(path, float(times[0]), len(times), settings.camera.frames_per_s, told)
 
 

@@ -14,6 +14,7 @@ from benchlab.io.angle_series import read_angle_series
 from benchlab.io.journal import read_journal
 from benchlab.io.twin_file import read_twin
 from benchlab.twin.effects.catalogue import DEFAULT, EFFECTS, FAULTS
+from benchlab.workflows.study_readings import Target, read_run
 
 GUIDE = (Path(__file__).resolve().parents[2] / "docs" / "twin.md").read_text(encoding="utf-8")
 SMALL = "camera: {width_px: 640, height_px: 360, markers: 7}\n"
@@ -43,6 +44,7 @@ def test_protocol_twin_film_angle(lab: Path, benchlab: Callable) -> None:
     assert trigger_s == pytest.approx(0.32)
     done = benchlab("analyze", "a.film.mp4", "--pressure", "a.h5", f"--sync={-trigger_s}", "--out", "seen")
     assert done.code == 0, done.err
+    assert read_run(lab / "seen" / "a.film.h5", Target.of(0.2, 0.002)).origin == "twin"  # a study says so
     found, truth = read_angle_series(lab / "seen" / "a.film.csv"), read_angle_series(lab / "a.truth.csv")
     error = found.angle_deg - np.interp(found.time_s + trigger_s, truth.time_s, truth.angle_deg)
     assert len(error) >= 60 and truth.angle_deg.max() > 80

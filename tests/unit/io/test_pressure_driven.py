@@ -12,8 +12,8 @@ from tests.unit.io.journals import header_of, samples_of, write_journal
 TRIGGER = {60: [{"kind": "trigger", "tick": 60, "time_s": 1.21}]}
 
 
-def record(tmp_path, samples=None, header=None, events=TRIGGER):
-    journal = read_journal(write_journal(tmp_path / "run.journal", samples, header, events))
+def record(tmp_path, samples=None, header=None, events=TRIGGER, **options):
+    journal = read_journal(write_journal(tmp_path / "run.journal", samples, header, events, **options))
     write_drive_file(tmp_path / "run.h5", journal)
     return read_pressure(tmp_path / "run.h5")
 
@@ -59,3 +59,13 @@ def test_a_pressure_that_cannot_be_is_refused_as_in_any_record(tmp_path):
     samples["pressure_MPa"][7] = 60.0
     with pytest.raises(InputError, match=r"row 8: pressure of 60 MPa, outside"):
         record(tmp_path, samples)
+
+
+def test_the_vented_bench_seen_again_at_one_moment_is_no_doubt(tmp_path):
+    samples = np.append(samples_of(), samples_of()[-1:])
+    samples["pressure_MPa"][-1] += 0.01
+    found = record(tmp_path, samples)
+    assert found.warnings == () and found.at([samples["time_s"][-1]])[0] == pytest.approx(samples["pressure_MPa"][-2])
+    (tmp_path / "run.journal").unlink()
+    told = record(tmp_path, stop={"reason": "stuck sensor", "words": "", "vented": True}).warnings
+    assert told == ("run.h5: the run was not completed: stuck sensor",)

@@ -50,7 +50,7 @@ def test_what_is_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ahead_s:
     assert film.start_s == 5.5 and film.frames == 16
     assert film.scale_mm_per_px == pytest.approx(factor * 180 / twin_film.twin_scene(settings).length_px)
     with av.open(str(tmp_path / "a.mp4")) as container:
-        assert container.metadata["title"] == "drawn by benchlab, not filmed"
+        assert container.metadata["title"] == "drawn by benchlab, not filmed: camera of a simulated bench (twin)"
         assert "simulated bench" in container.metadata["comment"] and "starts at 5.5" in container.metadata["comment"]
         assert len(list(container.decode(video=0))) == 16
 
