@@ -93,18 +93,15 @@ def run(protocol: str, dry_run: bool, quiet: bool, as_json: bool, **options: Any
     if dry_run:
         found = planned(prepared)
         _tell_plan(found)
+        _print_json(found, as_json)
     else:
         _tell_before(prepared)
-        found, bug = _drive(prepared, quiet)
-        if bug is not None:
-            raise bug
-    if as_json:
-        click.echo(json.dumps(found, indent=2, allow_nan=False))
+        found = _drive(prepared, quiet, as_json)
     return int(found.get("exit_code", 0))
 
 
-def _drive(prepared: Any, quiet: bool) -> tuple[dict[str, Any], BaseException | None]:
-    """What the run came to, which is told, and the bug that ended it, if one did.
+def _drive(prepared: Any, quiet: bool, as_json: bool) -> dict[str, Any]:
+    """What the run came to, which is told. A bug that ended it is raised then.
 
     Signals are ours from the beginning to the last word, so that no second Ctrl-C keeps the outcome from being told."""
     from benchlab.cli.run_keys import have_keys, keys_to
@@ -122,7 +119,16 @@ def _drive(prepared: Any, quiet: bool) -> tuple[dict[str, Any], BaseException | 
         with progress("drawing the film, frames", quiet or not prepared.settings.video) as reporter:
             found = written(prepared, driven, stop, reporter)
         _tell(found, prepared.warnings)
-    return found, driven.end.cause.error if driven.end.reason == "bug" else None
+        bug = driven.end.cause.error if driven.end.reason == "bug" else None
+        _print_json(found, as_json and bug is None)
+    if bug is not None:
+        raise bug
+    return found
+
+
+def _print_json(found: dict[str, Any], wanted: bool) -> None:
+    if wanted:
+        click.echo(json.dumps(found, indent=2, allow_nan=False))
 
 
 def _tell_plan(found: dict[str, Any]) -> None:

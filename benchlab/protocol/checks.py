@@ -22,7 +22,7 @@ def check_limits(plan: Plan, bench: Bench) -> None:
     >>> check_limits(unroll([Hold(1.0, 0.34)], "a", 100.0, 0.35), Bench("nominal"))  # doctest: +ELLIPSIS
     Traceback (most recent call last):
         ...
-    benchlab.errors.InputError: step 1 (hold 0.34 MPa for 1 s): asks for 0.34 MPa, above ... the ceiling of the bench nominal; ...
+    benchlab.errors.InputError: step 1 (hold 0.34 MPa for 1 s): asks for 0.34 MPa, above ... the ceiling of the bench; ask for less, or ... ...
     """
     _check_numbers(plan)
     ceiling_MPa = bench.ceiling_MPa
@@ -32,7 +32,7 @@ def check_limits(plan: Plan, bench: Bench) -> None:
         return
     worst = int(np.argmax(highest))
     more = f"; in all, {counted(len(over), 'step')} of {len(highest)} ask for too much" if len(over) > 1 else ""
-    named = "" if bench.name == "bench" else f" {bench.name}"
+    named = "" if bench.name == "bench" or not bench.calibrated else f" {bench.name}"
     raise InputError(
         f"asks for {highest[worst]:.4g} MPa, above {ceiling_MPa:.4g} MPa, the ceiling of the bench{named}{more}",
         where=_place(plan, worst),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -185,3 +186,34 @@ def test_a_reader_that_has_gone_does_not_stop_the_run(runs: Runs) -> None:
     assert runs.journal.stop and runs.journal.stop["reason"] == "completed"
     process.stdout = process.stderr = None
     assert (runs.folder / "a.h5").exists()
+
+
+def test_interrupting_again_and_again_still_tells_the_outcome_and_the_files(runs: Runs) -> None:
+    process = runs.start()
+    runs.going(process)
+    ended = time.monotonic() + 30
+    while not (runs.folder / "a.truth.csv").exists() and process.poll() is None and time.monotonic() < ended:
+        process.send_signal(signal.SIGINT)
+        time.sleep(0.05)
+    out, err = process.communicate(timeout=30)
+    assert process.returncode == 130 and "benchlab: interrupted: " in err and "vented" in err, err
+    found = json.loads(out)
+    assert found["vented"] and found["outputs"] == [
+        line.split("wrote ")[1] for line in err.splitlines() if "wrote " in line
+    ]
+    assert all(Path(path).exists() for path in found["outputs"]) and runs.journal.complete
+
+
+def test_a_folder_that_is_removed_ends_the_run_and_no_file_is_claimed(runs: Runs) -> None:
+    out = runs.folder / "out"
+    process = runs.start("--out", str(out))
+    until = time.monotonic() + 30
+    while not (out / "a.journal").exists() or (out / "a.journal").stat().st_size < 8000:
+        assert time.monotonic() < until and process.poll() is None
+        time.sleep(0.02)
+    shutil.rmtree(out)
+    told, err = process.communicate(timeout=30)
+    found = json.loads(told)
+    assert process.returncode == 3 and found["reason"] == "journal" and found["vented"], err
+    assert "not at its place any more" in found["words"] and found["outputs"] == [] and found["time_s"] < 10
+    assert "wrote" not in err and "recover" not in err and "old result" not in err

@@ -35,7 +35,11 @@ def test_a_dry_run_says_what_would_run_and_opens_nothing(
 
 REFUSED = [
     (["high.yaml"], 3, "line 5: ramp 0 to 0.36 MPa in 1 s reaches 0.36 MPa"),
-    (["above.yaml", "--bench", "serial:/dev/nowhere"], 3, "the ceiling of the bench not calibrated"),
+    (
+        ["above.yaml", "--bench", "serial:/dev/nowhere"],
+        3,
+        "above.yaml, line 5, step 1 (ramp 0 to 0.349 MPa in 1 s): asks for 0.349 MPa, above 0.32 MPa, the ceiling of the bench; in all",
+    ),
     (["nothing.yaml"], 2, "no protocol of this name"),
     (
         ["short.yaml", "--bench", "metal"],
@@ -51,6 +55,10 @@ REFUSED = [
     (["short.yaml", "--pause-limit-s", "0"], 2, "--pause-limit-s is 0"),
     (["short.yaml", "--max-duration-s", "5"], 3, "8 s"),
     (["short.yaml", "--name", "a/b"], 2, "is no name for files"),
+    (["short.yaml", "--name", ""], 2, "is no name for files"),
+    (["short.yaml", "--name", "-x"], 2, "is no name for files"),
+    (["short.yaml", "--name", "x.h5"], 2, "give --name x: the suffixes come by themselves"),
+    (["short.yaml", "--guard", "above_MPa=5"], 2, "--guard above_MPa=5: more than 0.1"),
     (["short.yaml", "--out", "none/here"], 2, "no such folder"),
     (["short.yaml", "--out", "short.yaml"], 2, "it is a file"),
     (["short.yaml", "--name", "taken"], 2, "taken.h5: exists, and measured data is never replaced"),

@@ -157,3 +157,76 @@ def test_a_bug_is_told_as_one_after_the_bench_was_vented(
     assert done.code == 1 and "this is a bug in benchlab: ZeroDivisionError" in done.err and "vented" in done.err
     journal = read_journal(tmp_path / "a.journal")
     assert journal.stop and journal.stop["reason"] == "bug" and journal.stop["vented"] and len(journal.driven) == 101
+
+
+@pytest.mark.parametrize("at_s", [0.9, 1.5, 2.6])
+def test_air_locked_in_the_actuator_is_a_failure_of_a_shipped_protocol(
+    tmp_path: Path, benchlab: Any, at_s: float
+) -> None:
+    twin = tmp_path / "twin.yaml"
+    twin.write_text(f"faults:\n  supply_shut: {{at_s: {at_s}}}\n")
+    words = ("--bench", f"twin:{twin}", "--fast", "--guard", "follow_s=off", "--guard", "bend_s=off")
+    done = benchlab("run", "linear_ramp", *words, "--out", tmp_path, "--name", "a", "--json")
+    found = done.json
+    assert (done.code, found["reason"], found["vented"], found["empty"]) == (5, "not empty", True, False), done.err
+    assert "PRESSURE MAY BE LEFT INSIDE" in done.err and "not watched: a pressure that does not follow" in done.err
+    assert found["guards_off"] == ["follow_s", "bend_s"] and "; vented\n" not in done.err
+    journal = read_journal(tmp_path / "a.journal")
+    assert journal.header["guards_off"] == ["follow_s", "bend_s"]
+    assert len(journal.samples) - len(journal.driven) == found["samples_watched"] == 301
+    assert benchlab("recover", tmp_path / "a.journal", "--out", tmp_path / "again", "--json").json["ticks"] == 501
+
+
+def test_a_stop_at_the_top_has_the_fall_of_the_pressure_in_its_journal_and_replays(
+    tmp_path: Path, benchlab: Any
+) -> None:
+    stop = Stop()
+    prepared = run_prepare.prepare("linear_ramp", RunSettings(out=tmp_path, name="a", fast=True))
+    done = run_workflow.drive(
+        prepared, stop, lambda tick: stop.ask(QUIT) if tick.index == 240 and not stop.over else None
+    )
+    found = written(prepared, done, stop)
+    journal = read_journal(tmp_path / "a.journal")
+    after = journal.samples[len(journal.driven) :]
+    assert (found["reason"], found["empty"], found["exit_code"], found["ticks"]) == ("quit", True, 130, 241)
+    assert after["pressure_MPa"][0] > 0.3 and after["pressure_MPa"][-1] < 0.01 and after["angle_deg"][-1] < 20
+    assert done.truth is not None and len(done.truth.time_s) == len(journal.samples)
+    benchlab("run", "linear_ramp", "--bench", f"replay:{tmp_path / 'a.journal'}", "--out", tmp_path, "--name", "b")
+    again = read_journal(tmp_path / "b.journal")
+    assert again.samples["pressure_MPa"].tolist() == journal.samples["pressure_MPa"].tolist()
+    assert again.stop and again.stop["empty"] is True
+
+
+def test_enough_of_a_film_leaves_the_outcome_and_the_files(tmp_path: Path) -> None:
+    """A wish while it is drawn ends the drawing, and the run was complete."""
+    stop = Stop()
+    prepared = run_prepare.prepare("linear_ramp", RunSettings(out=tmp_path, name="a", fast=True, video=True))
+    driven_run = run_workflow.drive(prepared, stop)
+    stop.write()
+    frames = []
+
+    def progress(done: int, total: int | None) -> None:
+        frames.append(done)
+        if done == 3:
+            stop.ask(QUIT)
+
+    found = written(prepared, driven_run, stop, progress)
+    assert frames[-1] == 3 and (found["reason"], found["empty"], found["exit_code"]) == ("completed", True, 130)
+    assert left(tmp_path) == ["a.csv", "a.h5", "a.journal", "a.png", "a.truth.csv"] and len(found["outputs"]) == 5
+    assert "the film was not drawn: interrupted" in found["warnings"][-1]
+
+
+def test_an_interrupt_that_gets_through_while_files_are_written_says_how_to_make_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from benchlab.workflows import run_files
+
+    def hang(*_: Any) -> None:
+        raise KeyboardInterrupt
+
+    prepared = run_prepare.prepare("linear_ramp", RunSettings(out=tmp_path, name="a", fast=True))
+    driven_run = run_workflow.drive(prepared, Stop())
+    monkeypatch.setattr(run_files, "write_results", hang)
+    found = written(prepared, driven_run)
+    assert found["exit_code"] == 130 and found["outputs"] == [str(tmp_path / "a.journal")]
+    assert "benchlab recover" in found["error"]["what"]
