@@ -10,7 +10,6 @@ import click
 
 from benchlab.errors import InputError, counted, printable
 
-
 MOST_GAPS = 5
 """Holes in the record that are told one by one."""
 
@@ -57,7 +56,8 @@ def _tell(found: dict[str, Any]) -> None:
     lines = [f"{printable(found['title'])}: {found['ticks']}{planned} ticks, up to {found['last_time_s']:.3f} s"]
     if found["complete"]:
         ended = f"{found['reason']}: {found['words']}" if found["words"] else str(found["reason"])
-        vented = "vented" if found["vented"] else "NOT CONFIRMED VENTED: look at the bench"
+        good = found["vented"] and found["empty"] is not False
+        vented = f"{found['left']}{'' if good else ': look at the bench'}"
         lines.append(f"  its end is recorded: {printable(ended)}; {vented}")
     else:
         lines.append(
@@ -67,7 +67,9 @@ def _tell(found: dict[str, Any]) -> None:
     lines += [f"  lost: {printable(words)}" for words in found["lost"]] or ["  nothing is lost of what was written"]
     lines += [f"  {words}" for words in found["gaps"][:MOST_GAPS]]
     if len(found["gaps"]) > MOST_GAPS:
-        lines.append(f"  and {len(found['gaps']) - MOST_GAPS} more holes, {counted(found['missing_ticks'], 'tick')} in all")
+        lines.append(
+            f"  and {len(found['gaps']) - MOST_GAPS} more holes, {counted(found['missing_ticks'], 'tick')} in all"
+        )
     if found["origin"] != "measured":
         lines.append(f"  {printable(found['origin'])}")
     lines += [f"  wrote {printable(path)}" for path in found["outputs"]]

@@ -219,6 +219,18 @@ class Journal:
         return [_told(loss) for loss in self.losses]
 
 
+def vent_told(stop: dict[str, Any]) -> str:
+    """How a run left its bench, by its stop record, in words.
+
+    >>> vent_told({"vented": True, "empty": True}), vent_told({"vented": True, "empty": None}), vent_told({"vented": False})
+    ('vented and seen empty', 'vented, as the device says', 'NOT CONFIRMED VENTED')
+    """
+    if not stop.get("vented"):
+        return "NOT CONFIRMED VENTED"
+    seen = {True: "vented and seen empty", False: "NOT EMPTY AFTER ITS VENT", None: "vented, as the device says"}
+    return seen[stop.get("empty")]
+
+
 def read_journal(path: Path) -> Journal:
     """All whole records of a journal, also of one that is cut, damaged, or still being written.
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from benchlab.errors import counted
 from benchlab.io.drive_file import cycles_of, origin, trigger_ticks
 from benchlab.io.drive_gaps import Gap, broken, gaps_of
-from benchlab.io.journal import Journal
+from benchlab.io.journal import Journal, vent_told
 from benchlab.report.figures import DPI, figure_class
 from benchlab.report.panels import BLUE, GREY, dress
 from benchlab.report.wording import drawable, fitted, width_in
@@ -215,7 +215,7 @@ def end_words(journal: Journal) -> str:
     else:
         reason, why = str(stop.get("reason", "")), str(stop.get("words", ""))
         words.append("completed" if reason == "completed" else f"{reason}: {why}" if why else reason)
-        words.append("vented" if stop.get("vented") else "NOT CONFIRMED VENTED")
+        words.append(vent_told(stop))
     gaps = gaps_of(journal)
     if len(gaps) == 1:
         words.append(gaps[0].words)

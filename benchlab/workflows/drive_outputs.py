@@ -11,7 +11,7 @@ from benchlab.io.drive_file import origin, write_drive_file
 from benchlab.io.drive_gaps import gaps_of
 from benchlab.io.drive_table import write_drive_csv
 from benchlab.io.files import cannot_write, check_new_file, check_regular_file, make_folder, sha256, written_whole
-from benchlab.io.journal import Journal, read_journal, still_written
+from benchlab.io.journal import Journal, read_journal, still_written, vent_told
 from benchlab.report.drive_figure import draw_drive_figure
 from benchlab.report.figures import save_png
 from benchlab.workflows.outputs import Outputs
@@ -66,7 +66,7 @@ def _write_together(journal: Journal, path: Path, outputs: list[Path]) -> None:
 def summary(journal: Journal) -> dict[str, Any]:
     """What a journal holds and lacks, in JSON's own types.
 
-    complete: whether it has a record of its end. vented: None where nobody knows.
+    complete: whether it has a record of its end. vented, empty: None where nobody knows; left: how the bench was left, in words.
     """
     stop = journal.stop or {}
     plan = journal.header.get("plan")
@@ -77,6 +77,8 @@ def summary(journal: Journal) -> dict[str, Any]:
         "reason": stop.get("reason"),
         "words": stop.get("words"),
         "vented": stop.get("vented"),
+        "empty": stop.get("empty"),
+        "left": vent_told(stop) if stop else None,
         "samples": len(journal.samples),
         "ticks": len(set(journal.samples["tick"].tolist())),
         "ticks_planned": plan.get("ticks") if isinstance(plan, dict) else None,
