@@ -62,3 +62,22 @@ def test_no_line_is_wider_than_the_terminal(screen: Screen, width: int, title: s
 
 def test_it_is_drawn_over_itself() -> None:
     assert up_by(0) == "\r\x1b[J" and up_by(4) == "\r\x1b[4A\x1b[J"
+
+
+def test_in_virtual_time_it_says_how_long_it_still_computes_and_in_real_time_not(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    now = [100.0]
+    monkeypatch.setattr("benchlab.cli.run_screen.time.monotonic", lambda: now[0])
+    for pausable, words in ((False, "(about 6 s left)"), (True, "")):
+        screen = Screen(read_protocol("linear_ramp"), Stop(pausable=pausable), keys=True)
+        screen.on_tick(tick(0))
+        now[0] += 0.5
+        assert "left" not in screen.place(tick(83))  # too early to say
+        now[0] += 0.7
+        assert words in screen.place(tick(83)) and bool(words) == ("left" in screen.place(tick(83)))
+
+
+def test_after_the_vent_it_says_that_it_watches(screen: Screen) -> None:
+    screen.stop.close()
+    assert screen.hint() == "vented; watched until it is empty, Ctrl-C ends that"

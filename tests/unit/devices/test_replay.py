@@ -108,3 +108,24 @@ def test_an_answer_that_was_missing_is_missing_again():
 
 def test_it_says_what_was_replayed():
     assert replay().about() == {"kind": "replay", "replayed": "serial", "firmware": "1.0"}
+
+
+def test_what_was_watched_after_the_vent_comes_after_the_vent_of_a_run_that_went_as_far():
+    device = Replay(SAMPLES, {}, (5,), watched=10)
+    device.arm()
+    play(device, 50)
+    device.vent()
+    again = [device.exchange(0.5 + i / 100, 0.0).pressure_MPa for i in range(10)]
+    np.testing.assert_array_equal(again, SAMPLES["pressure_MPa"][50:])
+    with pytest.raises(BenchError, match="the recording ends here"):
+        device.exchange(0.7, 0.0)
+    assert device.faults() == []
+
+
+def test_a_replay_that_ends_sooner_makes_up_no_vent():
+    device = Replay(SAMPLES, {}, (5,), watched=10)
+    device.arm()
+    play(device, 20)
+    device.vent()
+    with pytest.raises(BenchError, match="nothing is known of a vent here"):
+        device.exchange(0.2, 0.0)

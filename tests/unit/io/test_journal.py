@@ -420,3 +420,39 @@ def test_a_writer_killed_at_any_time_leaves_whole_records(tmp_path):
         assert read.lost_bytes == 0 and not still_written(path) and not read.complete
         assert read.samples["tick"].tolist() == list(range(len(read.samples)))
         assert len(read.samples) - 1 in {(said or [0])[-1], (said or [0])[-1] + 1}
+
+
+@pytest.mark.parametrize("how", ["removed", "moved with its folder", "another in its place"])
+def test_a_journal_that_is_not_at_its_place_any_more_is_told_in_the_next_sample_and_at_its_end(
+    tmp_path, monkeypatch, how
+):
+    monkeypatch.setattr(journal_module, "SYNC_S", 0.02)
+    folder = tmp_path / "out"
+    folder.mkdir()
+    writer = JournalWriter(folder / "a.journal", {})
+    row = samples_of().tolist()[0]
+    writer.sample(*row)
+    time.sleep(0.1)
+    writer.sample(*row)  # all is well so far
+    if how.startswith("moved"):
+        folder.rename(tmp_path / "elsewhere")
+    else:
+        writer.path.unlink()
+    if how.startswith("another"):
+        writer.path.write_text("mine")
+    time.sleep(0.2)
+    with pytest.raises(InputError, match=r"a\.journal: the journal is not at its place any more") as told:
+        writer.sample(*row)
+    assert "recover" not in str(told.value) and "no space" not in str(told.value)
+    with pytest.raises(InputError, match="not at its place any more"):
+        writer.close()
+
+
+def test_what_comes_after_the_vent_is_not_of_the_plan(tmp_path):
+    writer = JournalWriter(tmp_path / "a.journal", {})
+    row = samples_of().tolist()[0]
+    for kind in ("", "", "vent", "", "stop"):
+        writer.event(kind, time_s=1.0) if kind else writer.sample(*row)
+    writer.close()
+    read = read_journal(tmp_path / "a.journal")
+    assert len(read.samples) == 3 and len(read.driven) == 2
