@@ -61,6 +61,10 @@ def vent(bench: str, calibration: Path | None, as_json: bool) -> None:
         else f"the monitor shows {1000 * pressure:.1f} kPa"
     )
     click.echo(f"vented: the DAC holds code 0 and the latch is closed; {seen}", err=True)
+    if found["dac_power_on_code"] == 0:
+        click.echo("  at power-on the DAC gives code 0", err=True)
+    for told in [*found["notes"], *found["unsafe"]]:
+        click.echo(f"  WARNING: {printable(told)}", err=True)
     for fault in found["faults"]:
         click.echo(f"  {printable(fault)}", err=True)
     if refused is not None:
@@ -115,7 +119,11 @@ def firmware(
 
     if calibration is None:
         new = new_bench("not calibrated")
-        found = new_bench(new.name, limit_MPa or new.limit_MPa, full_scale_MPa or new.full_scale_MPa)
+        found = new_bench(
+            new.name,
+            new.limit_MPa if limit_MPa is None else limit_MPa,
+            new.full_scale_MPa if full_scale_MPa is None else full_scale_MPa,
+        )
     elif limit_MPa is None and full_scale_MPa is None:
         found = read_bench(calibration)
     else:

@@ -53,6 +53,8 @@ def measure(text: str, gauge: str, options: dict[str, Any]) -> tuple[list[GaugeR
         answers, about = Answers(), device.about()
         supply_V = options["supply_V"] or ask_volts(answers)
         counts = _counted(about, supply_V)
+        for told in about.get("notes", []):
+            _say(f"warning: {told}")
         unit = options["unit"] or ask_unit(answers)
         first = 1000 * levels[0]
         _say(

@@ -31,6 +31,10 @@ class LostError(BenchError):
     """The bench does not answer any more."""
 
 
+class OutputError(BenchError):
+    """The bench gives more than was asked for."""
+
+
 @dataclass(frozen=True, slots=True)
 class Reading:
     """What a bench answers to one command; NaN where it has no such sensor or gave no answer.

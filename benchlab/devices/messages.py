@@ -88,6 +88,19 @@ def hello_of(payload: bytes) -> Hello | None:
     return replace(hello, reference=reference, reference_samples=max(1, samples))
 
 
+def power_on_told(hello: Hello) -> str:
+    """What must be told of the code that the DAC takes at power-on; nothing where it is 0."""
+    if hello.dac_eeprom == 0:
+        return ""
+    if hello.dac_eeprom == UNKNOWN_CODE:
+        return "the DAC's power-on code could not be read: it may give half of full scale until the firmware runs"
+    share = 100 * hello.dac_eeprom / 4096
+    return (
+        f"the DAC's power-on code is {hello.dac_eeprom}, and the firmware could not program it to 0: each time it is switched on it gives "
+        f"{share:.0f} % of the supply until the firmware runs; use another DAC"
+    )
+
+
 def answer_of(payload: bytes) -> Answer | None:
     """None where this is no answer."""
     return Answer(*_ANSWER.unpack(payload)) if len(payload) == _ANSWER.size else None

@@ -17,10 +17,12 @@ from benchlab.devices.messages import (
     Answer,
     answer_of,
     arm_payload,
+    power_on_told,
     set_payload,
 )
 from benchlab.devices.supply import supply_notes, supply_told
 from benchlab.devices.transport import SerialTransport, Transport
+from benchlab.devices.unsafe import check_output, unsafe_settings
 from benchlab.errors import BenchError
 
 PATIENCE = 0.9
@@ -62,10 +64,11 @@ class SerialBench:
             )
         if hello.ceiling_code > bench.ceiling_code:
             notes.append(
-                "the firmware's own ceiling lies above the bench's: write it anew with `benchlab bench firmware`"
+                f"the firmware's own ceiling, code {hello.ceiling_code}, lies above the bench's, {bench.ceiling_code}: write it anew with "
+                "`benchlab bench firmware`"
             )
-        if hello.dac_eeprom != 0:
-            notes.append("what the DAC gives at power-on could not be set to 0")
+        if power_on := power_on_told(hello):
+            notes.append(power_on)
         notes += supply_notes(hello, bench)
         return {
             "kind": self.kind,
@@ -81,8 +84,10 @@ class SerialBench:
             "boot": hello.boot,
             "boot_cause": hello.cause,
             "dac_address": hello.dac_address,
+            "dac_power_on_code": None if hello.dac_eeprom == UNKNOWN_CODE else hello.dac_eeprom,
             **supply_told(hello.reference_counts, bench),
             "notes": notes,
+            "unsafe": unsafe_settings(hello, bench),
         }
 
     @property
@@ -96,6 +101,12 @@ class SerialBench:
         self._check_open()
         if self._rebooted:
             raise BenchError("the bench has booted since it was opened", file=self._line.name, hint="open it again")
+        if unsafe := unsafe_settings(self._hello, self._bench):
+            raise BenchError(
+                f"the bench is not armed: {'; '.join(unsafe)}",
+                file=self._line.name,
+                hint="write its firmware anew with `benchlab bench firmware`, with --calibration if it has one",
+            )
         answer = self._talk.insist(ARM, arm_payload(self._boot), "arm")
         self._reading(answer)
         if self._rebooted or not answer.flags & Status.ARMED:
@@ -122,7 +133,9 @@ class SerialBench:
         heard = self._talk.ask(SET, set_payload(code, trigger), patience_s)
         if heard is not None and (answer := answer_of(heard)):
             self._mute_s = None
-            return self._reading(answer)
+            reading = self._reading(answer)
+            check_output(reading, code, self._bench, self._line.name)
+            return reading
         self._talk.tally.count(f"no answer to a command within {1000 * patience_s:.0f} ms; went on without")
         self._mute_s = asked_s if self._mute_s is None else self._mute_s
         if self._line.clock_s() - self._mute_s > LOST_S:
@@ -141,8 +154,10 @@ class SerialBench:
         answer = self._talk.insist(VENT, b"", "vent")
         self._reading(answer)
         if answer.code != 0:
-            raise LostError("the DAC does not acknowledge, so nobody knows its output", file=self._line.name,
-                            hint="take the pressure away by hand")  # fmt: skip
+            what = "the DAC does not acknowledge, or does not hold 0, so nobody knows its output"
+            if answer.code != UNKNOWN_CODE:
+                what = f"asked to vent, the device says that the DAC's output is code {answer.code}"
+            raise LostError(what, file=self._line.name, hint="take the pressure away by hand")
         self._vented = True
 
     def faults(self) -> list[Fault]:
@@ -166,7 +181,7 @@ class SerialBench:
         self._line.advance(self._offset_s + time_s)
 
     def _reading(self, answer: Answer) -> Reading:
-        bench, steps = self._bench, self._hello.adc_samples * ADC_STEPS / self._bench.supply_V
+        bench, steps = self._bench, (self._hello.adc_samples or math.nan) * ADC_STEPS / self._bench.supply_V
         status = Status(answer.flags)
         if answer.boot != self._boot:
             status |= Status.REBOOTED

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from benchlab.bench import LimitError
-from benchlab.devices.interface import LostError
+from benchlab.devices.interface import LostError, OutputError
 from benchlab.errors import BenchError, InputError, printable
 from benchlab.units import FloatArray
 
@@ -125,16 +125,21 @@ def judged(cause: Cause, emptied: Emptied) -> Cause:
     return Cause("not empty", f"{seen}: {look}")
 
 
+REASONS = (
+    (LostError, "lost"),
+    (LimitError, "limit"),
+    (OutputError, "output"),
+    (BenchError, "refused"),
+    (InputError, "journal"),
+)
+"""Of exceptions; the first that fits."""
+
+
 def cause_of(error: BaseException) -> Cause:
     """An exception as a cause: of the bench, of the user, or a bug."""
     if isinstance(error, KeyboardInterrupt):
         return Cause("interrupted", "interrupted from the keyboard, twice", error)
-    if isinstance(error, LostError):
-        return Cause("lost", str(error), error)
-    if isinstance(error, LimitError):
-        return Cause("limit", str(error), error)
-    if isinstance(error, BenchError):
-        return Cause("refused", str(error), error)
-    if isinstance(error, InputError):
-        return Cause("journal", str(error), error)
+    for kind, reason in REASONS:
+        if isinstance(error, kind):
+            return Cause(reason, str(error), error)
     return Cause("bug", f"a bug in benchlab: {type(error).__name__}: {printable(error)}", error)

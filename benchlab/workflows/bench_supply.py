@@ -19,8 +19,11 @@ the ADC's step at the calibration and now, and up to 1 % for the reference betwe
 def check_supply(about: dict[str, Any], bench: Bench) -> None:
     """Judge what a device says of its supply. BenchError where it is above the calibrated one, or none that a bench can have.
 
-    A device that does not measure its supply is not judged.
+    A device that does not measure its supply is not judged. What it says of its settings, which it refuses to be armed with, is told here.
     """
+    if unsafe := about.get("unsafe"):
+        hint = "write its firmware anew with `benchlab bench firmware`, with --calibration if it has one"
+        raise BenchError(f"not armed: {'; '.join(unsafe)}", hint=hint)
     counts = about.get("reference_counts")
     if counts is None:
         return

@@ -35,6 +35,7 @@ def vent_bench(device: Device, bench: Bench, clock: Clock) -> dict[str, Any]:
             f"asked to vent and the DAC is at 0, but the monitor shows {1000 * reading.pressure_MPa:.1f} kPa after {WAIT_S:g} s",
             hint="close the supply and open the relief valve by hand; is the regulator powered?",
         )
+    about = device.about()
     return {
         "bench": bench.name,
         "kind": device.kind,
@@ -42,6 +43,9 @@ def vent_bench(device: Device, bench: Bench, clock: Clock) -> dict[str, Any]:
         "code": reading.code,
         "pressure_MPa": reading.pressure_MPa if math.isfinite(reading.pressure_MPa) else None,
         "after_s": round(clock.now_s(), 3),
+        "dac_power_on_code": about.get("dac_power_on_code"),
+        "unsafe": about.get("unsafe", []),
+        "notes": about.get("notes", []),
         "faults": [fault.cause for fault in device.faults()],
     }
 

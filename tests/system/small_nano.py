@@ -27,6 +27,7 @@ class SmallNano:
                  counts: float | None = None) -> None:  # fmt: skip
         self.ceiling_code, self.deaf_to, self.sticks_MPa, self.counts = ceiling_code, deaf_to, sticks_MPa, counts
         self.code, self.armed, self.silent = 0, False, False
+        self.power_on_code, self.silence_ms = 0, 200
         self.highest_code = 0
         self.vents: list[str] = []
         self.heard_s = time.monotonic()
@@ -90,10 +91,10 @@ class SmallNano:
                 0,
                 self.ceiling_code,
                 40,
-                200,
+                self.silence_ms,
                 125,
                 1,
-                0,
+                self.power_on_code,
                 1,
                 ADC_SAMPLES,
                 0x62,

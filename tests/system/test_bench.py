@@ -52,6 +52,16 @@ def test_vent_says_what_was_confirmed(benchlab, calibration: Path) -> None:
     assert done.json["confirmed"] and done.json["code"] == 0 and abs(done.json["pressure_MPa"]) < 0.001
 
 
+def test_vent_tells_what_the_dac_gives_at_power_on(benchlab) -> None:
+    with SmallNano() as nano:
+        assert "at power-on the DAC gives code 0" in benchlab("bench", "vent", "--bench", f"serial:{nano.port}").err
+        nano.power_on_code, nano.silence_ms = 2048, 60_000
+        done = benchlab("bench", "vent", "--bench", f"serial:{nano.port}", "--json")
+    assert done.code == 0 and done.json["dac_power_on_code"] == 2048
+    assert "WARNING: the DAC's power-on code is 2048" in done.err and "50 % of the supply" in done.err
+    assert "WARNING: the firmware's silence limit is 60000 ms" in done.err
+
+
 def test_vent_does_not_wait_for_a_calibration_that_can_be_read(benchlab, calibration: Path) -> None:
     calibration.write_text("name: [")
     with SmallNano() as nano:

@@ -80,6 +80,15 @@ def test_a_firmware_that_gives_less_is_told_before_anything_is_armed(
     assert nano.highest_code == 0 and not list(tmp_path.glob("r.*"))
 
 
+def test_a_firmware_that_never_falls_silent_is_refused_before_anything_is_armed(
+    benchlab, nano: SmallNano, files, tmp_path
+) -> None:
+    nano.silence_ms = 0
+    done = benchlab(*words(nano, *files))
+    assert done.code == 5 and "silence limit is 0 ms, not 50 to 500" in done.err
+    assert nano.highest_code == 0 and not list(tmp_path.glob("r.*"))
+
+
 def test_a_supply_that_has_risen_is_refused_before_anything_is_armed(
     benchlab, nano: SmallNano, files, tmp_path
 ) -> None:

@@ -25,9 +25,9 @@
 /* ---- Settings of this bench; `benchlab bench firmware` writes the ceiling of yours ---- */
 
 #define CEILING_CODE 2730    /* codes above are refused: 2730 of 4096 is 3.50 V at the 5.25 V that USB may have, 0.35 MPa at 0.1 MPa/V */
-#define SLEW_CODES_PER_MS 40 /* rises only; falling is never slowed */
-#define SILENCE_MS 200       /* armed, and nothing valid heard for this long: vent */
-#define TRIGGER_MS 20        /* length of the camera's pulse */
+#define SLEW_CODES_PER_MS 40 /* rises only, 1 to 255; falling is never slowed */
+#define SILENCE_MS 200       /* armed, and no code taken for this long, 50 to 500: vent */
+#define TRIGGER_MS 20        /* length of the camera's pulse, 1 to 255 */
 #define DAC_ADDRESS 0x62     /* of the MCP4725: 0x62, or 0x60 to 0x67, as printed on the board */
 #define ADC_SAMPLES 8        /* readings are means of so many conversions, one each millisecond; a power of two, at most 32 */
 
@@ -36,7 +36,7 @@
 #define PROTOCOL 1 /* of the frames; the computer refuses another */
 #define VERSION_MAJOR 1
 #define VERSION_MINOR 1
-#define VERSION_PATCH 0
+#define VERSION_PATCH 1
 
 #define BAUD 500000UL      /* 16 MHz / 16 / 2: exact here, in the FT232 (3 MHz / 6) and in the CH340 (12 MHz / 24) */
 #define TWI_HZ 100000UL    /* slow edges of long wires and weak pull-ups are fine */
@@ -47,6 +47,21 @@
 
 #if CEILING_CODE < 0 || CEILING_CODE > 4095
 #error "CEILING_CODE must be 0 to 4095"
+#endif
+#if SLEW_CODES_PER_MS < 1 || SLEW_CODES_PER_MS > 255
+#error "SLEW_CODES_PER_MS must be 1 to 255"
+#endif
+#if SILENCE_MS < 50 || SILENCE_MS > 500
+#error "SILENCE_MS must be 50 to 500"
+#endif
+#if TRIGGER_MS < 1 || TRIGGER_MS > 255
+#error "TRIGGER_MS must be 1 to 255"
+#endif
+#if DAC_ADDRESS < 0x60 || DAC_ADDRESS > 0x67
+#error "DAC_ADDRESS must be 0x60 to 0x67"
+#endif
+#if ADC_SAMPLES < 1 || ADC_SAMPLES > 32 || (ADC_SAMPLES & (ADC_SAMPLES - 1))
+#error "ADC_SAMPLES must be 1, 2, 4, 8, 16 or 32"
 #endif
 
 enum { SYNC = 0xB5, HEAD = 5, CRC = 2, MOST = 23, ASKED = 3 }; /* bytes: of a head, a CRC, the longest payload, and asked */
@@ -64,7 +79,7 @@ static uint16_t output, target;      /* code that the DAC holds, and that was as
 static uint16_t dac_eeprom, boots;   /* code that the DAC takes at power-on; number of boots */
 static uint8_t flags, allowance, trigger_ms, since_refresh_ms, spoken_to;
 static uint16_t last_number, crc_errors, dropped;
-static uint32_t heard_ms;            /* when the last valid command came */
+static uint32_t heard_ms;            /* when it was armed, or last took a code */
 
 static volatile uint32_t clock_ms;
 static volatile uint8_t hung_ms;     /* since the main loop came by */
@@ -99,17 +114,35 @@ static void twi_stop(void)
         ;
 }
 
-static void twi_begin(void) /* let go of the bus, clock out whoever holds it, take it again */
+#define SDA (1 << PC4)
+#define SCL (1 << PC5)
+
+static void twi_line(uint8_t line, uint8_t low) /* pull it low, or let it rise */
 {
+    if (low)
+        DDRC |= line;
+    else
+        DDRC &= ~line;
+    _delay_us(5);
+}
+
+/* Let go of the bus, free it from a DAC that holds it, take it again. A DAC that was left in the middle of a byte must not take what is
+ * clocked here for the rest of it, as ones above all. So SDA is low when SCL is let go: a bit that was under way ends as a 0; then SDA
+ * rises while SCL is high, which is a stop. SCL is clocked only while the DAC itself holds SDA low, to send or to acknowledge. */
+static void twi_begin(void)
+{
+    PORTC &= ~(SDA | SCL);
+    DDRC = (DDRC & ~SCL) | SDA;
     TWCR = 0;
-    PORTC &= ~((1 << PC4) | (1 << PC5));
-    for (uint8_t n = 0; n < 9; n++) {
-        DDRC |= 1 << PC5; /* SCL low, then let it rise */
-        _delay_us(5);
-        DDRC &= ~(1 << PC5);
-        _delay_us(5);
+    _delay_us(5);
+    twi_line(SDA, 0);
+    for (uint8_t n = 0; n < 9 && !(PINC & SDA); n++) {
+        twi_line(SCL, 1);
+        twi_line(SCL, 0);
     }
-    PORTC |= (1 << PC4) | (1 << PC5); /* weak pull-ups beside those of the board */
+    twi_line(SDA, 1); /* start and stop, without a clock: whatever was under way has ended */
+    twi_line(SDA, 0);
+    PORTC |= SDA | SCL; /* weak pull-ups beside those of the board */
     TWSR = 0;
     TWBR = (F_CPU / TWI_HZ - 16) / 2;
     TWCR = 1 << TWEN;
@@ -156,9 +189,13 @@ static uint8_t dac_read(uint8_t *five) /* status, code (2), EEPROM (2) */
 
 static void vent(void);
 
-static void dac_put(uint16_t code)
+static void dac_put(uint16_t code) /* whoever asks, for whatever reason: nothing above the ceiling passes here */
 {
     since_refresh_ms = 0;
+    if (code > CEILING_CODE) {
+        flags &= ~ARMED;
+        code = target = 0;
+    }
     if (!dac_write(code)) {
         twi_begin();
         if (!dac_write(code)) {
@@ -171,11 +208,21 @@ static void dac_put(uint16_t code)
     output = code;
 }
 
+static uint8_t dac_is_zero(void) /* what it holds is read back: an acknowledgement only says that something heard it */
+{
+    uint8_t five[5];
+    return dac_read(five) && (five[1] | (five[2] & 0xF0)) == 0;
+}
+
 static void vent(void)
 {
     flags &= ~ARMED;
     target = 0;
     dac_put(0);
+    if (output == 0 && !dac_is_zero() && !dac_is_zero()) {
+        output = UNKNOWN;
+        flags |= DAC_LOST;
+    }
 }
 
 static void drive(void) /* towards the target: down at once, up by what is allowed in this millisecond */
@@ -426,6 +473,7 @@ static void arm(uint16_t for_boot)
         return;
     }
     flags = (flags & WATCHDOG) | ARMED;
+    heard_ms = now_ms();
 }
 
 static void set(uint16_t code, uint8_t trigger)
@@ -435,6 +483,7 @@ static void set(uint16_t code, uint8_t trigger)
         return;
     }
     target = code;
+    heard_ms = now_ms(); /* nothing else keeps it armed: a computer that only asks, or asks for too much, does not drive it */
     drive();
     if (trigger) {
         PORTD |= 1 << PD2;
@@ -459,7 +508,6 @@ static void obey(uint16_t number, uint8_t command, const uint8_t *payload, uint8
         return;
     } else if (ahead > 0) { /* else: the same again, as its answer was lost; it is only answered */
         flags &= ~REFUSED;
-        heard_ms = now_ms();
         if (command == ARM)
             arm(value);
         else if (command == SET)

@@ -60,7 +60,7 @@ static unsigned feed_at, feed_end, said_end, triggers;
 static avr_cycle_count_t next_feed, last_said;
 
 static struct {
-    unsigned code, memory, here, skip, selected, index;
+    unsigned code, memory, here, skip, stuck, selected, index;
     uint8_t bytes[8];
 } dac = {.code = 0x800, .memory = 0x800, .here = 1}; /* as delivered: half of full scale at power-on */
 static struct { double volts; avr_cycle_count_t at; } regulator;
@@ -86,7 +86,7 @@ static void dac_take(uint8_t byte)
     uint8_t *b = dac.bytes;
     unsigned first = dac.index == 0;
     b[dac.index++ & 7] = byte;
-    if (first)
+    if (first || dac.stuck)
         return;
     if ((b[0] & 0xC0) == 0 && dac.index == 2) { /* fast: 0 0 PD1 PD0 D11..8, D7..0 */
         dac.code = (b[0] & 0x0F) << 8 | b[1];
@@ -333,6 +333,7 @@ static void obey(char *line, int lockstep)
         run_until(strtoull(until, NULL, 10) * MHZ, 1);
     } else if (!strcmp(what, "dac")) {
         dac.skip = !strcmp(value, "skip");
+        dac.stuck = !strcmp(value, "stuck");
         dac.here = strcmp(value, "lost") != 0;
         note(value, 0);
     } else if (!strcmp(what, "flex")) {

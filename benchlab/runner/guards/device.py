@@ -17,7 +17,8 @@ class DeviceGuard:
         Status.SILENCE: ("silence", "the device vented because it heard nothing for longer than its silence limit"),
         Status.REBOOTED: (
             "rebooted",
-            "the device has booted since it was armed, and is vented: look at its supply and its cable",
+            "the device has booted since it was armed, and is vented: look at its supply and its cable, or, where its watchdog "
+            "is told, at what its firmware hung on",
         ),
         Status.DAC_LOST: ("dac lost", "the device's DAC does not acknowledge: look at its wires"),
         Status.REFUSED: ("refused", "the device did not take the pressure asked for, which is above its own ceiling"),

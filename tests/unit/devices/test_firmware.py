@@ -3,6 +3,7 @@
 import itertools
 import math
 import random
+import re
 import struct
 import subprocess
 from collections.abc import Iterator
@@ -63,7 +64,7 @@ def test_the_dacs_power_on_value_is_programmed_once(nano: Nano) -> None:
 def test_hello_tells_version_limits_and_boot(nano: Nano) -> None:
     nano.hello()
     said = nano.said
-    assert (said.protocol, said.version, said.ceiling_code, said.cause) == (1, "1.1.0", CEILING, "power")
+    assert (said.protocol, said.version, said.ceiling_code, said.cause) == (1, "1.1.1", CEILING, "power")
     assert (said.slew_codes_per_ms, said.silence_ms, said.watchdog_ms, said.adc_samples) == (40, 200, 100, 8)
     nano.tell("reset")
     nano.run(0.1)
@@ -77,7 +78,7 @@ def test_hello_is_these_bytes(nano: Nano) -> None:
     nano.line.write(nano.wire.ask(HELLO))
     payload = nano.wire.hear(nano.line.read(0.05)) or b""
     told = struct.unpack("<BBBBHHHHHHBBBBHB", payload)
-    assert told == (1, 1, 1, 0, CEILING, 40, 200, 100, 0, 0, 1, 8, 0x62, REBOOTED, 64 * 225, 64)
+    assert told == (1, 1, 1, 1, CEILING, 40, 200, 100, 0, 0, 1, 8, 0x62, REBOOTED, 64 * 225, 64)
 
 
 def test_the_supply_is_measured_after_the_boot_and_after_each_run(nano: Nano) -> None:
@@ -191,6 +192,56 @@ def test_noise_and_old_commands_are_no_sign_of_life(nano: Nano) -> None:
     for _ in range(30):
         nano.raw(old + b"\xb5\x03noise", 0.01)
     assert nano.status().flags & SILENCE
+
+
+def test_only_a_code_that_is_taken_keeps_it_armed(nano: Nano) -> None:
+    """Neither status nor codes above the ceiling nor arming twice in vain: a host that does not drive is silent."""
+    for say in (nano.status, lambda: nano.set(CEILING + 1), lambda: nano.ask(ARM, arm_payload(nano.boot ^ 1))):
+        nano.arm()
+        nano.hold(1500, 0.1)
+        for _ in range(30):
+            nano.run(0.01)
+            answer = say()
+        assert answer.flags & SILENCE and answer.code == 0
+
+
+def test_a_dac_that_acknowledges_and_does_not_follow_is_no_vent(nano: Nano) -> None:
+    """Each vent reads back what the DAC holds."""
+    nano.arm()
+    nano.hold(1500, 0.1)
+    nano.tell("dac stuck")
+    answer = nano.vent()
+    assert answer.code == UNKNOWN_CODE and answer.flags & DAC_LOST
+    assert nano.arm().flags & REFUSED
+    nano.tell("dac back")
+    nano.run(0.02)
+    assert nano.vent().code == 0 and nano.arm().flags == ARMED
+
+
+def test_nothing_above_the_ceiling_reaches_the_dac_whoever_asks(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without the check of the command, the last one vents."""
+    blind = firmware_text(BENCH).replace("if (code > CEILING_CODE || (code && ", "if ((code && ")
+    assert blind != firmware_text(BENCH)
+    monkeypatch.setattr(emulator, "firmware_text", lambda bench: blind)
+    nano = Nano(tmp_path / "events.txt")
+    nano.arm()
+    nano.set(4000)
+    nano.run(0.15)
+    assert highest(nano) <= CEILING and nano.tell("state").code == 0 and not nano.status().flags & ARMED
+    nano.emulator.close()
+
+
+@pytest.mark.parametrize("setting", ["CEILING_CODE 4096", "SLEW_CODES_PER_MS 256", "SLEW_CODES_PER_MS 0", "SILENCE_MS 0",
+                                     "SILENCE_MS 60000", "TRIGGER_MS 300", "DAC_ADDRESS 0x50", "ADC_SAMPLES 12"])  # fmt: skip
+def test_settings_that_do_not_fit_are_not_compiled(tmp_path: Path, setting: str) -> None:
+    name = setting.partition(" ")[0]
+    text, count = re.subn(rf"#define {name} \w+", f"#define {setting}", firmware_text(BENCH))
+    assert count == 1
+    (tmp_path / "sketch.ino").write_text(text)
+    done = subprocess.run([*AVR, "-E", str(tmp_path / "sketch.ino")], capture_output=True, text=True, check=False)
+    assert done.returncode and f"{name} must be" in done.stderr
 
 
 def test_a_hung_main_loop_is_vented_and_reset(nano: Nano) -> None:

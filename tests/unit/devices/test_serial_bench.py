@@ -16,7 +16,7 @@ from benchlab.bench import Bench, LimitError, Line
 from benchlab.devices import conversation
 from benchlab.devices.emulated import LockstepTransport
 from benchlab.devices.emulator import Emulator
-from benchlab.devices.interface import LostError, Status
+from benchlab.devices.interface import LostError, OutputError, Status
 from benchlab.devices.messages import HELLO, Answer
 from benchlab.devices.serial_bench import SerialBench
 from benchlab.devices.tally import Tally
@@ -51,7 +51,7 @@ def causes(device: SerialBench) -> dict[str, int]:
 def test_what_it_says_of_itself(line: FaultyLine) -> None:
     about = SerialBench(line, BENCH).about()
     assert about["ceiling_code"] == BENCH.ceiling_code and about["ceiling_MPa"] == BENCH.ceiling_MPa
-    assert about["firmware"] == "1.1.0" and about["notes"] == []
+    assert about["firmware"] == "1.1.1" and about["notes"] == []
     assert about["slew_MPa_per_s"] == pytest.approx(40_000 * 5 / 4096 * 0.096)
 
 
@@ -90,7 +90,7 @@ def test_its_clock_goes_on_where_the_nanos_begins_again() -> None:
 
 def test_a_firmware_with_a_lower_ceiling_is_told_and_kept(line: FaultyLine) -> None:
     """The bench may give 0.35 MPa, the firmware was written for 0.3."""
-    wider = replace(BENCH, limit_MPa=0.4)
+    wider = replace(BENCH, limit_MPa=0.4, limit_reason="a test")
     device = SerialBench(line, wider)
     (note,) = device.about()["notes"]
     assert "the firmware gives at most 0.3499 MPa, the bench 0.4 MPa" in note
@@ -100,13 +100,80 @@ def test_a_firmware_with_a_lower_ceiling_is_told_and_kept(line: FaultyLine) -> N
 
 
 def test_a_firmware_with_a_higher_ceiling_is_told(line: FaultyLine) -> None:
-    (note,) = SerialBench(line, replace(BENCH, limit_MPa=0.2)).about()["notes"]
-    assert "ceiling lies above the bench's" in note
+    device = SerialBench(line, replace(BENCH, limit_MPa=0.33))
+    (note,) = device.about()["notes"]
+    assert "ceiling, code 2986, lies above the bench's, 2816" in note
+    device.arm()
+
+
+def test_a_firmware_with_a_much_higher_ceiling_is_not_armed(line: FaultyLine) -> None:
+    device = SerialBench(line, replace(BENCH, limit_MPa=0.3))
+    assert "code 2986, more than 10 % above this bench's 2560" in device.about()["unsafe"][0]
+    with pytest.raises(BenchError, match=r"not armed: .*more than 10 %.*bench firmware"):
+        device.arm()
+    device.vent()
+
+
+@pytest.mark.parametrize(
+    ("at", "value", "named"),
+    [
+        (8, 0, "silence limit is 0 ms"),
+        (8, 60_000, "silence limit is 60000 ms"),
+        (6, 4095, "slew is 4095 codes/ms"),
+        (6, 0, "slew is 0"),
+        (10, 9000, "hung main loop is 9000 ms"),
+        (4, 65_535, "ceiling is code 65535, and the DAC ends at 4095"),
+        (17, 0, "means of 0 conversions"),
+    ],
+)
+def test_a_firmware_with_settings_that_are_not_safe_is_vented_and_not_armed(
+    line, at: int, value: int, named: str
+) -> None:
+    edited = OldFirmware(line, head=bytes([1, 1, 1, 1]), size=23)
+    old = edited.old
+
+    def told(frame: Frame) -> Frame:
+        payload = bytearray(old(frame).payload)
+        payload[at : at + (1 if at == 17 else 2)] = value.to_bytes(1 if at == 17 else 2, "little")
+        return replace(frame, payload=bytes(payload))
+
+    edited.old = told
+    device = SerialBench(edited, BENCH)
+    assert named in device.about()["unsafe"][0]
+    with pytest.raises(BenchError, match=named):
+        device.arm()
+    device.vent()
+    assert device.exchange(0.0, 0.0).code == 0
+
+
+@pytest.mark.parametrize(("code", "told"), [(2048, "50 % of the supply"), (0xFFFF, "could not be read")])
+def test_a_dac_that_starts_with_pressure_is_told(line: FaultyLine, code: int, told: str) -> None:
+    edited = OldFirmware(line, head=bytes([1, 1, 1, 1]), size=23)
+    edited.old = lambda frame: replace(
+        frame, payload=frame.payload[:14] + code.to_bytes(2, "little") + frame.payload[16:]
+    )
+    about = SerialBench(edited, BENCH).about()
+    assert told in about["notes"][0] and about["dac_power_on_code"] == (code if code < 4096 else None)
+
+
+def test_more_than_was_asked_for_ends_it_at_once(line: FaultyLine, emulator: Emulator) -> None:
+    """A DAC that acknowledges and stays: falling is never slowed, so that its code is above what was asked for."""
+    device = SerialBench(line, BENCH)
+    device.arm()
+    ramp(device, line, 20)
+    device._reading = lambda answer, read=device._reading: replace(read(answer), code=900)
+    with pytest.raises(OutputError, match="output is code 900, and 853 was asked for"):
+        device.exchange(0.3, 0.1)
+    device._reading = lambda answer, read=SerialBench._reading: replace(
+        read(device, answer), code=3000, status=Status.REFUSED
+    )
+    with pytest.raises(OutputError, match="with a ceiling of 2986"):
+        device.exchange(0.31, 0.1)
 
 
 def test_another_protocol_is_refused(line: FaultyLine, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(conversation, "PROTOCOL", 9)
-    with pytest.raises(BenchError, match=r"firmware 1.1.0 speaks protocol 1, this benchlab 9; .*bench firmware"):
+    with pytest.raises(BenchError, match=r"firmware 1.1.1 speaks protocol 1, this benchlab 9; .*bench firmware"):
         SerialBench(line, BENCH)
 
 
@@ -184,7 +251,7 @@ def test_a_calibration_without_counts_is_told_where_no_monitor_shows_the_supply(
 
 def test_a_nano_that_still_boots_is_waited_for(line: FaultyLine) -> None:
     line.down.extend(["lose"] * 10)
-    assert SerialBench(line, BENCH).about()["firmware"] == "1.1.0"
+    assert SerialBench(line, BENCH).about()["firmware"] == "1.1.1"
 
 
 def test_nothing_that_answers_is_told(line: FaultyLine) -> None:
