@@ -50,9 +50,9 @@ class Replay:
         """The reading of the next tick. BenchError where what is asked differs from what was, with tick, field and both values."""
         if not self._armed and pressure_MPa > 0:
             raise BenchError(f"{pressure_MPa:g} MPa asked of a disarmed bench", hint="arm it first")
-        if not self._armed and self._next:
-            return self._after_vent()
         tick = self._next
+        if not self._armed and tick > self._last and self._watched:
+            return reading_of(self._watched.pop(0))
         row = self._rows.get(tick)
         if row is None:
             ended = (
@@ -61,19 +61,13 @@ class Replay:
                 else f"the recording lacks tick {tick}"
             )
             raise BenchError(f"{ended}, and {pressure_MPa:g} MPa are asked for at tick {tick}", where="replay")
+        if tick and not self._armed and int(row["status"]) & Status.ARMED:
+            raise BenchError(f"tick {tick} is of an armed bench, and this one was vented", where="replay")
         self._check(tick, "command_MPa", float(row["command_MPa"]), pressure_MPa)
         if self._triggers is not None:
             self._check(tick, "trigger", tick in self._triggers, trigger)
         self._next += 1
         return reading_of(row)
-
-    def _after_vent(self) -> Reading:
-        """The next reading of the vented bench."""
-        if self._next <= self._last:
-            raise BenchError("the recording goes on, and nothing is known of a vent here", where="replay")
-        if not self._watched:
-            raise BenchError("the recording ends here", where="replay")
-        return reading_of(self._watched.pop(0))
 
     def vent(self) -> None:
         self._armed = False
