@@ -103,9 +103,7 @@ def test_no_scatter_is_told() -> None:
 
 def test_failures_and_what_was_left_out_are_counted() -> None:
     told = said(studies.report(studies.doubtful_study()))
-    assert told["warning"].startswith(
-        "Not everything counts: 1 without a value (failed or missing); 1 left out."
-    )
+    assert told["warning"].startswith("Not everything counts: 1 without a value (failed or missing); 1 left out.")
 
 
 def test_table_of_designs_against_scipy(paper: StudyReport) -> None:
