@@ -178,7 +178,7 @@ def _vented(found: dict[str, Any]) -> str:
     if not found["vented"]:
         return f"NOT CONFIRMED VENTED ({printable(found['vent_words'])}): {BY_HAND}"
     if found["empty"] is None:
-        return f"vented, as the device says; whether it is empty is not known ({seen})"
+        return f"vented, as the device says, and not seen empty ({seen})"
     if found["empty"]:
         return f"vented and seen empty ({seen})"
     return f"the device says that it vented, and it is NOT EMPTY ({seen}). PRESSURE MAY BE LEFT INSIDE: {BY_HAND}"

@@ -227,8 +227,9 @@ def vent_told(stop: dict[str, Any]) -> str:
     """
     if not stop.get("vented"):
         return "NOT CONFIRMED VENTED"
-    seen = {True: "vented and seen empty", False: "NOT EMPTY AFTER ITS VENT", None: "vented, as the device says"}
-    return seen[stop.get("empty")]
+    if stop.get("empty") is False:
+        return "NOT EMPTY AFTER ITS VENT"
+    return "vented and seen empty" if stop.get("empty") is True else "vented, as the device says"
 
 
 def read_journal(path: Path) -> Journal:
