@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from contextlib import closing
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
 from typing import Any
 
 import click
 
-from benchlab.bench import is_reference, new_bench
+from benchlab.bench import Bench, is_reference, new_bench
 from benchlab.cli.bench_answers import Answers, ask_unit, ask_volts, pressure_of
 from benchlab.cli.bench_options import device_of
+from benchlab.devices.interface import Device
 from benchlab.errors import InputError, UsageError, printable
 from benchlab.io.bench_file import SIMULATED
 from benchlab.io.gauge_readings import GaugeReading
@@ -50,25 +52,44 @@ def measure(text: str, gauge: str, options: dict[str, Any]) -> tuple[list[GaugeR
             with VirtualHold(device) as hold:
                 readings = take_readings(hold, levels, nominal, supply_V, twin_gauge(device), settle_s, _say)
             return readings, supply_V, f"{SIMULATED} gauge of the twin", None
-        answers, about = Answers(), device.about()
-        supply_V = options["supply_V"] or ask_volts(answers)
-        counts = _counted(about, supply_V)
-        for told in about.get("notes", []):
-            _say(f"warning: {told}")
-        unit = options["unit"] or ask_unit(answers)
-        first = 1000 * levels[0]
-        _say(
-            f"the first level is {first:.0f} kPa by the nominal regulator; if the gauge shows far more, press Ctrl-C: it vents"
+        with _interruption_told():
+            return _asked(device, nominal, levels, kind, gauge, options)
+
+
+def _asked(
+    device: Device, nominal: Bench, levels: list[float], kind: str, gauge: str, options: dict[str, Any]
+) -> tuple[list[GaugeReading], float, str, float | None]:
+    """By somebody who reads a gauge."""
+    settle_s = options["settle_s"]
+    answers, about = Answers(), device.about()
+    supply_V = options["supply_V"] or ask_volts(answers)
+    counts = _counted(about, supply_V)
+    for told in about.get("notes", []):
+        _say(f"warning: {told}")
+    unit = options["unit"] or ask_unit(answers)
+    first = 1000 * levels[0]
+    _say(
+        f"the first level is {first:.0f} kPa by the nominal regulator; if the gauge shows far more, press Ctrl-C: it vents"
+    )
+    with ThreadHold(device) as held:
+        answers.check = held.check
+        readings = take_readings(
+            held, levels, nominal, supply_V, lambda level: _ask_gauge(answers, level, unit), settle_s, _say
         )
-        with ThreadHold(device) as held:
-            answers.check = held.check
-            readings = take_readings(
-                held, levels, nominal, supply_V, lambda level: _ask_gauge(answers, level, unit), settle_s, _say
-            )
-        click.echo("vented", err=True)
-        for fault in device.faults():
-            _say(f"{fault.cause} ({fault.count})")
+    click.echo("vented", err=True)
+    for fault in device.faults():
+        _say(f"{fault.cause} ({fault.count})")
     return readings, supply_V, gauge if kind == "serial" else f"{SIMULATED} bench ({kind}): {gauge}", counts
+
+
+@contextmanager
+def _interruption_told() -> Iterator[None]:
+    """Ctrl-C and SIGTERM, which come here once the bench is vented: where that was not confirmed, that comes in their place."""
+    try:
+        yield
+    except (KeyboardInterrupt, SystemExit):
+        click.echo("vented, nothing written", err=True)
+        raise KeyboardInterrupt from None
 
 
 def _counted(about: dict[str, Any], supply_V: float) -> float | None:

@@ -47,7 +47,7 @@ def check_zero(device: Device, bench: Bench, clock: Clock) -> None:
     if bench.supply_V * (1 + share) > HIGHEST_V:
         raise BenchError(
             f"the monitor of the vented bench reads {volts:.3f} V instead of {bench.monitor.inverse(0.0):.3f} V, which no supply explains",
-            hint="is it wired to A1, and does its regulator have its own supply? else take `monitor` out of the bench file",
+            hint="is it wired to A1, and does its regulator have its own supply? else calibrate again, without its wire",
         )
     if share > HIGH_SHARE:
         raise BenchError(

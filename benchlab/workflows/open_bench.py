@@ -98,10 +98,10 @@ def bench_of(spec: Spec, calibration: Path | None = None, twin: TwinSettings | N
 
 
 def bench_doubts(spec: Spec, bench: Bench) -> list[str]:
-    """What whoever uses a bench of metal must be told of its calibration: that there is none, that it is old. Nothing for the others."""
-    from benchlab.io.bench_file import calibration_warnings
+    """What must be told of a calibration: a limit above the paper's; of a bench of metal also that there is none, or that it is old."""
+    from benchlab.io.bench_file import calibration_warnings, limit_notes
 
-    return calibration_warnings(bench, datetime.date.today()) if spec.kind == "serial" else []
+    return calibration_warnings(bench, datetime.date.today()) if spec.kind == "serial" else limit_notes(bench)
 
 
 def open_bench(
