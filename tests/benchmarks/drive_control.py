@@ -33,6 +33,7 @@ from benchlab.protocol.curvature import AngleHold, AngleRamp, AngleSine
 from benchlab.protocol.plan import Plan
 from benchlab.protocol.unroll import unroll
 from benchlab.runner.clock import VirtualClock
+from benchlab.runner.guards.limits import Limits
 from benchlab.runner.run import execute
 from benchlab.twin.effects.catalogue import EFFECTS
 from benchlab.twin.effects.effect import Effect
@@ -89,7 +90,7 @@ class Run:
 def run(plan: Plan, settings: TwinSettings, bench: Bench, controller: Controller | None = None) -> Run:
     """A plan on a twin in virtual time, by the runner's own loop with its guards. RuntimeError where it does not complete."""
     twin, kept = Twin(settings, bench), Kept()
-    end = execute(plan, twin, bench, kept, VirtualClock(), controller)
+    end = execute(plan, twin, bench, kept, VirtualClock(), controller, limits=Limits(empty_s=math.inf))
     if end.reason != "completed":
         raise RuntimeError(f"the run ended by {end.reason}: {end.cause.words}")
     return Run(np.array(kept.rows, SAMPLE), twin.truth.angle_deg)
