@@ -29,7 +29,7 @@ def written(
     where somebody interrupted it: `stop` says so. progress: called with frames drawn and frames in all.
     """
     end, made = driven.end, [driven.journal]
-    troubles, code = [end.trouble] if end.trouble else [], InputError.exit_code
+    troubles, code = [end.trouble] if end.trouble and end.reason != "journal" else [], InputError.exit_code
     try:
         _write_results(prepared, driven, made)
         _write_film(prepared, driven, made, stop or Stop(), progress)

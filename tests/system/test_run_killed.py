@@ -160,6 +160,7 @@ def test_a_full_disk_vents_and_keeps_what_was_measured(runs: Runs) -> None:
     found = json.loads(out)
     assert process.returncode == 3 and found["reason"] == "journal" and found["vented"], err
     assert "the journal could not be written" in err and "recover" in err
+    assert err.count("the journal could not be written") == 1 and "old result" not in err
     assert len(runs.journal.samples) > 60 and runs.journal.samples["tick"].tolist() == list(
         range(len(runs.journal.samples))
     )
