@@ -21,7 +21,7 @@ from benchlab.devices.messages import (
     set_payload,
 )
 from benchlab.devices.supply import supply_notes, supply_told
-from benchlab.devices.transport import SerialTransport, Transport
+from benchlab.devices.transport import BY_ITSELF, SerialTransport, Transport
 from benchlab.devices.unsafe import check_output, unsafe_settings
 from benchlab.errors import BenchError
 
@@ -45,6 +45,7 @@ class SerialBench:
         self._armed = self._vented = self._closed = self._rebooted = False
         self._offset_s: float | None = None
         self._mute_s: float | None = None
+        self._before = self._talk.came()
         self._last_s, self._period_s = -math.inf, 0.01
         self._turns = self._micros = 0
         try:
@@ -129,6 +130,8 @@ class SerialBench:
             raise BenchError("the bench is not armed and gives no pressure", file=self._line.name, hint="arm it first")
         self._follow(time_s)
         self._vented = self._vented and code == 0
+        if self._mute_s is None:
+            self._before = self._talk.came()
         asked_s, patience_s = self._line.clock_s(), PATIENCE * self._period_s
         heard = self._talk.ask(SET, set_payload(code, trigger), patience_s)
         if heard is not None and (answer := answer_of(heard)):
@@ -140,8 +143,12 @@ class SerialBench:
         self._mute_s = asked_s if self._mute_s is None else self._mute_s
         if self._line.clock_s() - self._mute_s > LOST_S:
             self._armed = False
+            instead = self._talk.instead(self._before)
             raise LostError(
-                f"no answer for {LOST_S:g} s", file=self._line.name, hint="was the cable pulled, or the supply lost?"
+                f"no answer for {LOST_S:g} s" + (f", but {instead}" if instead else ""),
+                file=self._line.name,
+                hint=("look at cable and noise" if instead else "was the cable pulled, or the supply lost?")
+                + f"; {BY_ITSELF}",
             )
         return Reading(math.nan, math.nan, -1, math.nan, Status.NO_ANSWER)
 

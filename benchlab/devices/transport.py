@@ -20,6 +20,8 @@ BAUD = 500_000
 
 WRITE_S = 0.25
 
+BY_ITSELF = "the firmware vents by itself once it hears nothing; if it has no supply either, look at the regulator"
+
 
 class Transport(typing.Protocol):
     """A line to one device, with the clock that its waiting is measured by: real, or the virtual one of an emulation."""
@@ -111,7 +113,9 @@ class SerialTransport:
             time.sleep(0.0005)
 
     def _gone(self, error: Exception) -> LostError:
-        return LostError(f"the port is gone: {error}", file=self.name, hint="was the cable pulled, or the supply lost?")
+        return LostError(
+            f"the port is gone: {error}", file=self.name, hint=f"was the cable pulled, or the supply lost? {BY_ITSELF}"
+        )
 
 
 def _exclusive(port: serial.Serial, whether: bool) -> None:

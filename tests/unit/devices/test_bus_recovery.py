@@ -1,4 +1,4 @@
-"""How the sketch frees its bus, line by line, against a DAC that was left anywhere in a byte: compiled for this computer with a model of both."""
+"""How the sketch frees its bus from a DAC that was left anywhere in a byte: compiled for this computer, with a model of bus and DAC."""
 
 import re
 import shutil

@@ -287,7 +287,7 @@ class Babble:
 def test_garbage_is_told_after_2_s_and_the_port_let_go() -> None:
     line = Babble()
     with pytest.raises(
-        BenchError, match=r"COM7: no valid frame in 2 s, but [0-9]+ bytes of something else; is this the Nano"
+        BenchError, match=r"COM7: no valid frame in 2 s, but [0-9]+ bytes came, .*; is this the Nano.* 500000 baud"
     ):
         SerialBench(line, BENCH)
     assert line.closed
@@ -297,8 +297,38 @@ def test_a_few_words_of_a_bootloader_are_no_garbage() -> None:
     """It answers a few bytes to what is no sketch, at its own baud, and the firmware comes after up to 2 s."""
     line = Babble(size=0)
     line.read = lambda timeout_s: setattr(line, "now", line.now + timeout_s) or (b"\x14\x10" if line.now < 2 else b"")
-    with pytest.raises(BenchError, match=r"no valid frame in 4 s: nothing answers"):
+    with pytest.raises(BenchError, match=r"no valid frame in 4 s, but \d+ bytes came, none of them a frame"):
         SerialBench(line, BENCH)
+
+
+class Says(Babble):
+    """Answers each write with something: an echo, or words of another program."""
+
+    def __init__(self, words: bytes | None) -> None:
+        super().__init__(0)
+        self.words, self.out = words, b""
+
+    def write(self, data: bytes) -> None:
+        self.out += data if self.words is None else self.words
+
+    def read(self, timeout_s: float) -> bytes:
+        self.now += min(timeout_s, 0.02)
+        said, self.out = self.out, b""
+        return said
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (b"ok\r\n", r"bytes came, none of them a frame; the last: .*ok.*500000 baud"),
+        (None, r"bytes came, frames: \d+ that answer nothing that was asked: late, or an echo"),
+        (b"", r"no valid frame in 4 s: nothing answers"),
+    ],
+    ids=["another program", "echo", "nothing"],
+)
+def test_what_came_instead_of_a_hello_is_told(words: bytes | None, told: str) -> None:
+    with pytest.raises(BenchError, match=told):
+        SerialBench(Says(words), BENCH)
 
 
 @pytest.mark.parametrize(
@@ -417,6 +447,23 @@ def test_arm_and_vent_are_asked_again(line: FaultyLine) -> None:
     device.vent()
     told = causes(device)
     assert told["no answer to `arm`; asked again"] == 2 and told["no answer to `vent`; asked again"] == 2
+
+
+@pytest.mark.parametrize(
+    ("fault", "told"),
+    [
+        ("flip", r"but \d+ bytes came, frames: \d+ with a wrong"),
+        ("cut", r"but \d+ bytes came"),
+        ("lose", "was the cable"),
+    ],
+)
+def test_a_line_that_breaks_is_told_by_what_came(line: FaultyLine, fault: str, told: str) -> None:
+    device = SerialBench(line, BENCH)
+    device.arm()
+    ramp(device, line, 20)
+    line.up.extend([fault] * 200)
+    with pytest.raises(LostError, match=rf"no answer for 0.5 s.*{told}.*the firmware vents by itself"):
+        ramp(device, line, 100, start=20)
 
 
 def test_a_vent_that_nobody_confirms_is_lost(line: FaultyLine) -> None:
