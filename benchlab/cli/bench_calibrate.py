@@ -84,7 +84,8 @@ def calibrate(bench: str | None, gauge: str, out: Path, overwrite: bool, as_json
     type what the gauge shows. Written is a bench file for `--calibration`, with all readings in it.
 
     The bench is held at a level while you read, for up to five minutes, and vented at the end, on Ctrl-C and on every error. Nothing
-    goes up to a level where the readings so far foresee more than --limit-MPa.
+    goes up to a level where the readings so far foresee more than --limit-MPa. Type `r` in place of a reading to read the level before
+    once more.
 
     Refused are readings that pressure should not rest on: too few or too close levels, pressure that falls with the volts, R² below
     0.995, a reading unlike the others, by its number, and a full scale unlike the regulator's label.

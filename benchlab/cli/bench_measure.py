@@ -22,6 +22,9 @@ from benchlab.workflows.open_bench import open_bench
 
 TWIN_GAUGE = "twin"
 
+AGAIN = "r"
+"""What is typed to go back to the level before: its reading was a mistake."""
+
 UNLIKE = 2.0
 """A reading that differs from what the nominal regulator gives by more than this factor is asked for once more."""
 
@@ -71,6 +74,7 @@ def _asked(
     _say(
         f"the first level is {first:.0f} kPa by the nominal regulator; if the gauge shows far more, press Ctrl-C: it vents"
     )
+    _say(f"type {AGAIN} in place of a reading to read the level before once more")
     with ThreadHold(device) as held:
         answers.check = held.check
         readings = take_readings(
@@ -110,12 +114,14 @@ def _counted(about: dict[str, Any], supply_V: float) -> float | None:
     return round(counts, 3)
 
 
-def _ask_gauge(answers: Answers, level: Level, unit: str) -> float:
-    """The gauge's pressure in MPa; asked again where it cannot be read, and once more where it is unlike the level."""
+def _ask_gauge(answers: Answers, level: Level, unit: str) -> float | None:
+    """The gauge's pressure in MPa, None for `r`; asked again where it cannot be read, and once more where it is unlike the level."""
     doubted = ""
     while True:
         way = "up" if level.rising else "down"
         text = answers.ask(f"{level.number}/{level.of} {way}, {level.volts:.3f} V: the gauge in {unit}?")
+        if text.lower() == AGAIN and level.number > 1:
+            return None
         try:
             pressure = pressure_of(text, unit)
         except InputError as error:

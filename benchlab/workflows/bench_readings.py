@@ -30,8 +30,8 @@ class Level:
     rising: bool
 
 
-Gauge = Callable[[Level], float]
-"""Asks for the gauge's pressure in MPa while a level is held."""
+Gauge = Callable[[Level], float | None]
+"""Asks for the gauge's pressure in MPa while a level is held. None: the reading before was a mistake, go back to its level."""
 
 
 def levels_MPa(top_MPa: float, points: int) -> list[float]:
@@ -59,11 +59,15 @@ def take_readings(
     A level above the last is left out, with all above it, where the readings so far foresee more than the limit there. Raises
     BenchError, after which the bench is vented, for a reading above the limit, and at the second for readings that the regulator's label,
     which bench.regulator is, does not explain: in another unit than was said, as a rule.
+    A level that is read again on the way up is reached from above, and its reading says so.
     """
     readings: list[GaugeReading] = []
     highest, stands_at = math.inf, 0.0
-    for index, asked in enumerate(levels):
-        rising = index == 0 or asked > levels[index - 1]
+    read_at: list[int] = []  # index of the level of each reading
+    index = -1
+    while (index := index + 1) < len(levels):
+        asked = levels[index]
+        rising = asked > stands_at
         if asked >= highest or (rising and _too_high(readings, levels, index, bench.limit_MPa)):
             if highest == math.inf:
                 tell(
@@ -81,12 +85,17 @@ def take_readings(
         monitor = _mean([r.monitor_V for r in recent]) * supply_V / bench.supply_V
         pressure = gauge(Level(index + 1, len(levels), asked, volts, monitor, rising))
         hold.check()
+        if pressure is None:
+            readings.pop()
+            index = read_at.pop() - 1
+            continue
         if pressure > bench.limit_MPa:
             raise BenchError(
                 f"the gauge shows {pressure:.4g} MPa at {volts:.3f} V, above the limit of {bench.limit_MPa:g} MPa; vented",
                 hint="is it the unit? else give --max-MPa less, or find out what regulator this is",
             )
         readings.append(GaugeReading(round(volts, 6), round(pressure, 7), round(monitor, 6), rising, code))
+        read_at.append(index)
         if len(readings) == 2:
             _check_label(readings[-1], bench)
     return readings

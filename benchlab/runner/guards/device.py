@@ -8,6 +8,8 @@ from benchlab.devices.interface import Status
 from benchlab.runner.end import Cause
 from benchlab.runner.tick import Tick
 
+HUNG = (Status.REBOOTED | Status.WATCHDOG).value
+
 
 class DeviceGuard:
     """What the device says of itself: it vented, it booted, its DAC is gone, it did not take a command, it is not armed."""
@@ -17,8 +19,7 @@ class DeviceGuard:
         Status.SILENCE: ("silence", "the device vented because it heard nothing for longer than its silence limit"),
         Status.REBOOTED: (
             "rebooted",
-            "the device has booted since it was armed, and is vented: look at its supply and its cable, or, where its watchdog "
-            "is told, at what its firmware hung on",
+            "the device has booted since it was armed, and is vented: look at its supply and its cable",
         ),
         Status.DAC_LOST: ("dac lost", "the device's DAC does not acknowledge: look at its wires"),
         Status.REFUSED: ("refused", "the device did not take the pressure asked for, which is above its own ceiling"),
@@ -30,6 +31,10 @@ class DeviceGuard:
         if status & Status.NO_ANSWER.value:
             return None
         if status & self.BAD:
+            if status & HUNG == HUNG:
+                return Cause(
+                    "rebooted", "the device's main loop hung, its watchdog booted it, and it is vented: report it"
+                )
             for flag, (reason, words) in self.WORDS.items():
                 if status & flag.value:
                     return Cause(reason, words)

@@ -37,6 +37,21 @@ def test_the_true_regulator_and_monitor_are_found(tmp_path) -> None:
     assert found["ceiling_code"] == int((0.35 + 0.001) / 0.0965 / 4.9 * 4096)
 
 
+def test_a_mistake_is_read_again_and_the_level_is_then_reached_from_above() -> None:
+    device, asked = SmallBench(NEW), []
+
+    def gauge(level: Level) -> float | None:
+        asked.append(level.number)
+        if asked == [1, 2, 3, 4]:
+            return None
+        return 0.1 if asked == [1, 2, 3] else device.pressure_MPa
+
+    readings, _ = read(device, points=5, gauge=gauge)
+    assert asked == [1, 2, 3, 4, 3, 4, 5, 6, 7, 8, 9]
+    assert len(readings) == 9 and [r.rising for r in readings] == [True, True, False, True, True] + [False] * 4
+    assert readings[2].pressure_MPa == pytest.approx(device.true.of(readings[2].volts), abs=1e-6)
+
+
 def test_readings_in_another_unit_end_it_at_the_second_level() -> None:
     """psi typed as kPa: a seventh; the bench would be asked for seven times its limit."""
     device = SmallBench(NEW)
