@@ -18,7 +18,8 @@ from pydantic import Field
 from benchlab.bench import DAC_CODES, PAPER_LIMIT_MPA, Bench, Line
 from benchlab.errors import InputError
 from benchlab.io.gauge_readings import GaugeReading, check_readings
-from benchlab.io.yaml_file import Document, read_document, write_document
+from benchlab.io.yaml_commas import Place
+from benchlab.io.yaml_file import Document, read_document_with_lines, write_document
 
 OLDEST_DAYS = 365
 """A calibration that is older is told with every run."""
@@ -93,7 +94,7 @@ def read_bench_file(path: Path) -> BenchFile:
     Raises UsageError for a missing file, InputError for numbers that no bench has, a date that is none, readings that are missing or
     that pressure should not rest on (`fit_regulator`), and a line or a supply that is not the one of the readings beside it.
     """
-    found = read_document(path, _BenchDocument)
+    found, lines = read_document_with_lines(path, _BenchDocument)
     flex = found.flex
     readings = tuple(
         GaugeReading(r.volts, r.pressure_MPa, _or_nan(r.monitor_V), r.rising, r.code) for r in found.readings
@@ -118,7 +119,7 @@ def read_bench_file(path: Path) -> BenchFile:
         if bench.calibrated:
             check_readings(bench, readings)
     except InputError as error:
-        raise InputError(error.what, file=path, where=error.where, hint=error.hint) from error
+        raise InputError(error.what, file=path, where=_place(error, lines), hint=error.hint) from error
     return BenchFile(bench, readings, flex.source if flex else "")
 
 
@@ -224,6 +225,16 @@ def _reading(one: GaugeReading) -> dict[str, Any]:
     monitor = {"monitor_V": float(one.monitor_V)} if math.isfinite(one.monitor_V) else {}
     rising = {} if one.rising is None else {"rising": bool(one.rising)}
     return {"volts": float(one.volts), **code, "pressure_MPa": float(one.pressure_MPa), **monitor, **rising}
+
+
+def _place(error: InputError, lines: dict[Place, int]) -> str | None:
+    """The line of the key that the error names first, before what it says of its place itself."""
+    told = error.what
+    named = [
+        (told.find(str(place[0])), line) for place, line in lines.items() if len(place) == 1 and str(place[0]) in told
+    ]
+    line = f"line {min(named)[1]}" if named else None
+    return ", ".join(filter(None, (line, error.where))) or None
 
 
 def _check_origin(found: _BenchDocument) -> None:
