@@ -60,7 +60,8 @@ def vent(bench: str, calibration: Path | None, as_json: bool) -> None:
         if pressure is None
         else f"the monitor shows {1000 * pressure:.1f} kPa"
     )
-    click.echo(f"vented: the DAC holds code 0 and the latch is closed; {seen}", err=True)
+    holds = "holds" if found["read_back"] else "acknowledged, without being read back by this old firmware,"
+    click.echo(f"vented: the DAC {holds} code 0 and the latch is closed; {seen}", err=True)
     if found["dac_power_on_code"] == 0:
         click.echo("  at power-on the DAC gives code 0", err=True)
     for told in [*found["notes"], *found["unsafe"]]:

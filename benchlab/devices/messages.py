@@ -20,6 +20,9 @@ _ARM = struct.Struct("<H")
 MEASURES_SUPPLY = 1, 1
 """First version, major and minor, whose hello ends with a measurement of the supply."""
 
+READS_BACK = 1, 1, 1
+"""First version whose vents are confirmed by what the DAC holds, and not by its acknowledgement alone."""
+
 CAUSES = {1: "power", 2: "reset", 4: "brown-out", 8: "watchdog"}
 
 
@@ -52,6 +55,10 @@ class Hello:
     def reference_counts(self) -> float | None:
         """The mean of a conversion of the reference; None where it was not measured."""
         return self.reference / self.reference_samples if self.reference else None
+
+    @property
+    def reads_back(self) -> bool:
+        return (self.major, self.minor, self.patch) >= READS_BACK
 
     @property
     def version(self) -> str:

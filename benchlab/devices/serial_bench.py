@@ -87,6 +87,7 @@ class SerialBench:
             "dac_address": hello.dac_address,
             "dac_power_on_code": None if hello.dac_eeprom == UNKNOWN_CODE else hello.dac_eeprom,
             **supply_told(hello.reference_counts, bench),
+            "reads_back": hello.reads_back,
             "notes": notes,
             "unsafe": unsafe_settings(hello, bench),
         }

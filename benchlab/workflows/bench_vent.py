@@ -43,6 +43,7 @@ def vent_bench(device: Device, bench: Bench, clock: Clock) -> dict[str, Any]:
         "code": reading.code,
         "pressure_MPa": reading.pressure_MPa if math.isfinite(reading.pressure_MPa) else None,
         "after_s": round(clock.now_s(), 3),
+        "read_back": about.get("reads_back", True),
         "dac_power_on_code": about.get("dac_power_on_code"),
         "unsafe": about.get("unsafe", []),
         "notes": about.get("notes", []),

@@ -27,7 +27,7 @@ class SmallNano:
                  counts: float | None = None) -> None:  # fmt: skip
         self.ceiling_code, self.deaf_to, self.sticks_MPa, self.counts = ceiling_code, deaf_to, sticks_MPa, counts
         self.code, self.armed, self.silent = 0, False, False
-        self.power_on_code, self.silence_ms = 0, 200
+        self.power_on_code, self.silence_ms, self.patch = 0, 200, 0
         self.highest_code = 0
         self.vents: list[str] = []
         self.heard_s = time.monotonic()
@@ -88,7 +88,7 @@ class SmallNano:
                 PROTOCOL,
                 1,
                 int(self.counts is not None),
-                0,
+                self.patch,
                 self.ceiling_code,
                 40,
                 self.silence_ms,

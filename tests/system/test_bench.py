@@ -62,13 +62,21 @@ def test_vent_tells_what_the_dac_gives_at_power_on(benchlab) -> None:
     assert "WARNING: the firmware's silence limit is 60000 ms" in done.err
 
 
+def test_vent_says_whether_the_dac_was_read_back(benchlab) -> None:
+    with SmallNano(counts=COUNTS) as nano:
+        done = benchlab("bench", "vent", "--bench", f"serial:{nano.port}")
+        assert "the DAC acknowledged, without being read back by this old firmware, code 0" in done.err
+        nano.patch = 1
+        assert "vented: the DAC holds code 0" in benchlab("bench", "vent", "--bench", f"serial:{nano.port}").err
+
+
 def test_vent_does_not_wait_for_a_calibration_that_can_be_read(benchlab, calibration: Path) -> None:
     calibration.write_text("name: [")
     with SmallNano() as nano:
         nano.code, nano.armed = 500, True
         done = benchlab("bench", "vent", "--bench", f"serial:{nano.port}", "--calibration", calibration)
         assert nano.code == 0 and not nano.armed and "vent" in nano.vents
-    assert done.code == 3 and "vented: the DAC holds code 0" in done.err and "left.yaml" in done.err
+    assert done.code == 3 and "vented: the DAC acknowledged" in done.err and "left.yaml" in done.err
 
 
 def test_a_bench_must_be_said(benchlab) -> None:
