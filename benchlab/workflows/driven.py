@@ -30,8 +30,8 @@ class DrivenRun:
     bench: Bench
 
     def column(self, name: str) -> FloatArray:
-        """(T,) of a field of the journal's SAMPLE."""
-        return np.asarray(self.journal.samples[name], dtype=float)
+        """(T,) of a field of the journal's SAMPLE, at the ticks of the plan: without what was watched after the vent."""
+        return np.asarray(self.journal.driven[name], dtype=float)
 
     @property
     def header(self) -> dict[str, Any]:

@@ -50,6 +50,11 @@ def test_the_guide_goes_through_all_three_commands() -> None:
     assert len(COMMANDS) == 7
 
 
+def test_what_was_watched_after_the_vent_is_not_looked_at(guided: Path) -> None:
+    run = read_driven(guided / "steps.h5")
+    assert len(run.column("time_s")) == run.header["plan"]["ticks"] < len(run.journal.samples)
+
+
 def test_the_flex_line_is_the_twins(guided: Path) -> None:
     file, true = read_bench_file(guided / "bench.yaml"), twin_bench().flex
     found = file.bench.flex
