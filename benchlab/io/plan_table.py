@@ -15,7 +15,9 @@ COLUMNS = ("time_s", "pressure_MPa", "reference_deg", "step", "kind", "event")
 def write_plan_csv(path: Path, plan: Plan) -> None:
     """Each tick with the pressure or the angle that it asks for (the other is empty), its step (from 1) with its kind, and its events, as
     `mark: TEXT; trigger: camera`. InputError where the disk refuses."""
-    events = events_of_ticks(plan)
+    events = {
+        tick: "; ".join(f"{event.kind}: {event.text}" for event in here) for tick, here in plan.events_by_tick().items()
+    }
     rows = zip(plan.time_s.tolist(), plan.pressure_MPa.tolist(), plan.reference_deg.tolist(), plan.step.tolist())
     with written_whole(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
@@ -23,12 +25,3 @@ def write_plan_csv(path: Path, plan: Plan) -> None:
         for tick, (time_s, pressure, reference, step) in enumerate(rows):
             values = ("" if math.isnan(value) else f"{value:.9g}" for value in (pressure, reference))
             writer.writerow([f"{time_s:.9g}", *values, step + 1, plan.steps[step].kind, events.get(tick, "")])
-
-
-def events_of_ticks(plan: Plan) -> dict[int, str]:
-    """What happens at which tick, in words: an event comes at the first tick at or after its time."""
-    found: dict[int, str] = {}
-    for event in plan.events:
-        tick = min(math.ceil(event.time_s * plan.rate_Hz - 1e-6), len(plan.time_s) - 1)
-        found[tick] = "; ".join([*([found[tick]] if tick in found else []), f"{event.kind}: {event.text}"])
-    return found

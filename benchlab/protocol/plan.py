@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from benchlab.units import FloatArray
+
+TICK_PART = 1e-6
+"""Part of a tick by which a step may begin late, or an event be due, and still have it."""
 
 
 @dataclass(frozen=True)
@@ -83,6 +87,14 @@ class Plan:
     def closed_loop(self) -> bool:
         """Whether a controller decides the pressure anywhere."""
         return bool(np.isfinite(self.reference_deg).any())
+
+    def events_by_tick(self) -> dict[int, list[PlanEvent]]:
+        """Marks and triggers by the tick that they come at, the first at or after their time; those after the last tick, at the last."""
+        found: dict[int, list[PlanEvent]] = {}
+        for event in self.events:
+            tick = min(math.ceil(event.time_s * self.rate_Hz - TICK_PART), len(self.time_s) - 1)
+            found.setdefault(tick, []).append(event)
+        return found
 
     @property
     def ends_vented(self) -> bool:

@@ -8,14 +8,11 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from benchlab.protocol.groups import Repeat, Segment, Signal
-from benchlab.protocol.plan import Control, Plan, PlanEvent, Step
+from benchlab.protocol.plan import TICK_PART, Control, Plan, PlanEvent, Step
 from benchlab.protocol.stretch import DECIMALS, State, Stretch
 
 Begun = tuple[Stretch, tuple[int, ...], int]
 """A stretch with its counts and line."""
-
-_TICK = 1e-6
-"""Part of a tick by which a step may begin late and still have it."""
 
 
 def unroll(
@@ -49,11 +46,11 @@ def unroll(
         stretches.append(stretch)
         steps.append(_step(stretch, now_s, end_s, counts, line))
         now_s = end_s
-    ticks = math.ceil(now_s * rate_Hz - _TICK) + 1
+    ticks = math.ceil(now_s * rate_Hz - TICK_PART) + 1
     time_s = np.arange(ticks) / rate_Hz
     pressure_MPa, reference_deg = np.full(ticks, np.nan), np.full(ticks, np.nan)
     owner = np.zeros(ticks, np.int64)
-    firsts = [math.ceil(step.start_s * rate_Hz - _TICK) for step in steps]
+    firsts = [math.ceil(step.start_s * rate_Hz - TICK_PART) for step in steps]
     for index, (stretch, step) in enumerate(zip(stretches, steps)):
         here = slice(firsts[index], firsts[index + 1] if index + 1 < len(firsts) else ticks)
         values = stretch.of(np.clip(time_s[here] - step.start_s, 0.0, stretch.duration_s))

@@ -11,8 +11,8 @@ import numpy as np
 
 from benchlab.bench import Bench, LimitError
 from benchlab.control.controller import Controller
-from benchlab.devices.interface import Device, Fault, Reading
-from benchlab.protocol.plan import Plan, PlanEvent
+from benchlab.devices.interface import Device, Fault
+from benchlab.protocol.plan import Plan
 from benchlab.runner.clock import Clock
 from benchlab.runner.end import Cause
 from benchlab.runner.guards.choice import Guard
@@ -66,7 +66,7 @@ class Loop:
 
     def run(self) -> Cause:
         """All ticks of the plan, or those up to the cause that is given back. What device, controller or journal raise goes through."""
-        plan, events = self.plan, events_at(self.plan)
+        plan, events = self.plan, self.plan.events_by_tick()
         rows = zip(plan.time_s.tolist(), plan.step.tolist(), plan.pressure_MPa.tolist(), plan.reference_deg.tolist())
         for index, (time_s, step, pressure, reference) in enumerate(rows):
             cause = self._wait(time_s + self.shift_s)
@@ -94,10 +94,8 @@ class Loop:
 
     def watch_until(self, time_s: float) -> bool:
         """Wait for a look at the vented bench; whether it is still wanted."""
-        clock, stop = self.clock, self.stop
-        while (now := clock.now_s()) < time_s and not stop.enough:
-            clock.wait_until(min(time_s, now + LOOK_S))
-        return not stop.enough
+        self._sleep(time_s, lambda: self.stop.enough)
+        return not self.stop.enough
 
     def look(self) -> Tick:
         """Ask the vented bench for 0 MPa; what it answers waits for `write`. It is a tick after the plan: it has the last one's number."""
@@ -115,10 +113,13 @@ class Loop:
 
     def _wait(self, until_s: float) -> Cause | None:
         """Until the deadline, or until somebody wishes to stop."""
-        clock, stop = self.clock, self.stop
-        while (now := clock.now_s()) < until_s and stop.cause is None:
-            clock.wait_until(min(until_s, now + LOOK_S))
-        return stop.seen()
+        self._sleep(until_s, lambda: self.stop.cause is not None)
+        return self.stop.seen()
+
+    def _sleep(self, until_s: float, over: Callable[[], bool]) -> None:
+        """Until then, with a look now and then whether it is over before."""
+        while (now := self.clock.now_s()) < until_s and not over():
+            self.clock.wait_until(min(until_s, now + LOOK_S))
 
     def _pause(self, index: int, time_s: float) -> Cause | None:
         """Hold what was asked for last, with guards and journal at work, until it goes on: the plan's time stands still."""
@@ -196,29 +197,16 @@ class Loop:
         self._index, now = index, self.clock.now_s()
         reading = self.device.exchange(now, command_MPa, trigger)
         answer_s, late = self.clock.now_s() - now, max(0.0, now - deadline_s)
-        tick = self._answered(index, now, late, command_MPa, reading, reference_deg, held)
-        self._sample = sample_of(tick, self._step, answer_s, self.bench.volts(code))
-        return tick
-
-    def _answered(
-        self,
-        index: int,
-        time_s: float,
-        late_s: float,
-        command_MPa: float,
-        reading: Reading,
-        reference_deg: float,
-        held: bool,
-    ) -> Tick:
-        self._command_MPa = command_MPa
         angle = NAN if self.bench.flex is None else self.bench.flex.of(reading.flex_V)
-        self._angle_deg = angle
+        self._command_MPa, self._angle_deg = command_MPa, angle
         if not held:
             self.ticks += 1
-            self.late_s.append(late_s)
+            self.late_s.append(late)
         faults, status = self.ask_faults(), int(reading.status)
         fault = self._faults[-1].cause if faults else ""
-        return Tick(index, time_s, late_s, command_MPa, reading, status, angle, reference_deg, faults, fault, held)
+        tick = Tick(index, now, late, command_MPa, reading, status, angle, reference_deg, faults, fault, held)
+        self._sample = sample_of(tick, self._step, answer_s, self.bench.volts(code))
+        return tick
 
 
 def sample_of(tick: Tick, step: int, answer_s: float, command_V: float) -> tuple[Any, ...]:
@@ -241,15 +229,6 @@ def sample_of(tick: Tick, step: int, answer_s: float, command_V: float) -> tuple
         tick.status,
         reading.monitor_V,
     )
-
-
-def events_at(plan: Plan) -> dict[int, list[PlanEvent]]:
-    """Marks and triggers by the tick that they are due at; those after the last tick, at the last."""
-    found: dict[int, list[PlanEvent]] = {}
-    for event in plan.events:
-        index = min(int(np.searchsorted(plan.time_s, event.time_s - 1e-9)), len(plan.time_s) - 1)
-        found.setdefault(index, []).append(event)
-    return found
 
 
 def ahead_of(plan: Plan, lead_s: float) -> list[float]:

@@ -145,3 +145,9 @@ def test_what_is_known_after_a_vent_or_a_level() -> None:
     assert Vent(1.0).begun(State(None, None)).after == State(0.0, 0.0)
     assert Hold(1.0, 0.2).begun(State(None, 40.0)).after == State(0.2, None)
     assert AngleHold(30.0, 1.0).begun(State()).after == State(None, 30.0)
+
+
+def test_a_mark_between_steps_comes_at_the_first_tick_of_the_next() -> None:
+    plan = unroll([Repeat(30, (Signal("mark", "here"), Hold(2 / 3, 0.1)))], "thirds", 300.0, 0.35)
+    firsts = [int(np.flatnonzero(plan.step == index)[0]) for index in range(30)]
+    assert sorted(plan.events_by_tick()) == firsts
