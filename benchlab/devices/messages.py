@@ -5,6 +5,8 @@ from __future__ import annotations
 import struct
 from dataclasses import dataclass, replace
 
+from benchlab.bench import DAC_CODES
+
 PROTOCOL = 1
 """Of the frames; a firmware of another is refused."""
 
@@ -101,7 +103,7 @@ def power_on_told(hello: Hello) -> str:
         return ""
     if hello.dac_eeprom == UNKNOWN_CODE:
         return "the DAC's power-on code could not be read: it may give half of full scale until the firmware runs"
-    share = 100 * hello.dac_eeprom / 4096
+    share = 100 * hello.dac_eeprom / DAC_CODES
     return (
         f"the DAC's power-on code is {hello.dac_eeprom}, and the firmware could not program it to 0: each time it is switched on it gives "
         f"{share:.0f} % of the supply until the firmware runs; use another DAC"

@@ -7,7 +7,6 @@ from pathlib import Path
 from benchlab.io.files import written_whole
 from benchlab.twin.truth import COLUMNS, Truth
 
-SUFFIX = ".truth.csv"
 FIRST_LINE = "# simulated, not measured: the inside of benchlab's digital twin at each exchange"
 
 

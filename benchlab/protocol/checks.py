@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import numpy as np
 
 from benchlab.bench import Bench
@@ -11,10 +13,10 @@ from benchlab.protocol.plan import Plan
 _TOLERANCE_MPA = 1e-9
 
 
-def check_limits(plan: Plan, bench: Bench) -> None:
+def check_limits(plan: Plan, bench: Bench, file: str | os.PathLike[str] | None = None) -> None:
     """InputError where the plan asks for more than the bench may give, or not for a pressure at all; names the worst step.
 
-    Both what steps reach exactly and what the ticks ask for are looked at.
+    file: the protocol's, which the error names. Both what steps reach exactly and what the ticks ask for are looked at.
 
     >>> from benchlab.protocol.segments import Hold
     >>> from benchlab.protocol.unroll import unroll
@@ -24,7 +26,7 @@ def check_limits(plan: Plan, bench: Bench) -> None:
         ...
     benchlab.errors.InputError: step 1 (hold 0.34 MPa for 1 s): asks for 0.34 MPa, above ... the ceiling of the bench; ask for less, or ...
     """
-    _check_numbers(plan)
+    _check_numbers(plan, file)
     ceiling_MPa = bench.ceiling_MPa
     highest = _highest(plan)
     over = np.flatnonzero(highest > ceiling_MPa + _TOLERANCE_MPA)
@@ -35,6 +37,7 @@ def check_limits(plan: Plan, bench: Bench) -> None:
     named = "" if bench.name == "bench" or not bench.calibrated else f" {bench.name}"
     raise InputError(
         f"asks for {highest[worst]:.4g} MPa, above {ceiling_MPa:.4g} MPa, the ceiling of the bench{named}{more}",
+        file=file,
         where=_place(plan, worst),
         hint="ask for less"
         if bench.calibrated
@@ -42,7 +45,7 @@ def check_limits(plan: Plan, bench: Bench) -> None:
     )
 
 
-def _check_numbers(plan: Plan) -> None:
+def _check_numbers(plan: Plan, file: str | os.PathLike[str] | None) -> None:
     """Each tick has a pressure from 0 up, or a reference, and not both."""
     open_loop, closed = np.isfinite(plan.pressure_MPa), np.isfinite(plan.reference_deg)
     wrong = np.flatnonzero((open_loop == closed) | (plan.pressure_MPa < 0))
@@ -50,7 +53,7 @@ def _check_numbers(plan: Plan) -> None:
         tick = int(wrong[0])
         what = f"tick {tick} asks for {plan.pressure_MPa[tick]:g} MPa and {plan.reference_deg[tick]:g}°"
         hint = "a tick needs a pressure from 0 up, or an angle"
-        raise InputError(what, where=_place(plan, int(plan.step[tick])), hint=hint)
+        raise InputError(what, file=file, where=_place(plan, int(plan.step[tick])), hint=hint)
 
 
 def _highest(plan: Plan) -> np.ndarray:

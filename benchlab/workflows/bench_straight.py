@@ -10,9 +10,10 @@ from benchlab.bench import Bench, Line
 from benchlab.devices.interface import Device
 from benchlab.errors import BenchError
 from benchlab.runner.clock import Clock
+from benchlab.workflows.bench_rest import WAIT_S, readings_at_rest
 
-READINGS, PERIOD_S, WAIT_S = 15, 0.02, 5.0
-"""Readings to one angle, and how long is waited for an actuator that is still emptying."""
+READINGS = 15
+"""To one angle."""
 
 
 def check_straight(device: Device, bench: Bench, clock: Clock, most_deg: float) -> None:
@@ -37,10 +38,7 @@ def check_straight(device: Device, bench: Bench, clock: Clock, most_deg: float) 
 
 
 def _angle_deg(device: Device, flex: Line, clock: Clock) -> float:
-    """Median over a third of a second; 0 MPa is asked for, which needs no arming. NaN where nothing was read."""
-    began, volts = clock.now_s(), []
-    for index in range(READINGS):
-        clock.wait_until(began + (index + 1) * PERIOD_S)
-        volts.append(device.exchange(clock.now_s(), 0.0).flex_V)
+    """Median over a third of a second. NaN where nothing was read."""
+    volts = [reading.flex_V for reading in readings_at_rest(device, clock, READINGS)]
     known = [each for each in volts if math.isfinite(each)]
     return flex.of(float(np.median(known))) if known else math.nan

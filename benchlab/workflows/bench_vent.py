@@ -9,11 +9,10 @@ from benchlab.bench import Bench
 from benchlab.devices.interface import Device, Reading, Status
 from benchlab.errors import BenchError
 from benchlab.runner.clock import Clock
+from benchlab.runner.empty import EMPTY_MPA
 from benchlab.runner.run import vent
 from benchlab.workflows.bench_hold import not_vented
-
-EMPTY_MPA, WAIT_S, PERIOD_S = 0.01, 5.0, 0.02
-"""A monitor below the first says that the bench is empty; it is waited for as long as the second."""
+from benchlab.workflows.bench_rest import WAIT_S, readings_at_rest
 
 
 def vent_bench(device: Device, bench: Bench, clock: Clock) -> dict[str, Any]:
@@ -52,9 +51,8 @@ def vent_bench(device: Device, bench: Bench, clock: Clock) -> dict[str, Any]:
 
 
 def _look(device: Device, clock: Clock) -> Reading:
-    """The next reading that came; 0 MPa is asked for, which needs no arming. LostError by the device where none comes."""
+    """The next reading that came. LostError by the device where none comes."""
     while True:
-        clock.wait_until(clock.now_s() + PERIOD_S)
-        reading = device.exchange(clock.now_s(), 0.0)
+        (reading,) = readings_at_rest(device, clock, 1)
         if not reading.status & Status.NO_ANSWER:
             return reading

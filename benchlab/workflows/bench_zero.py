@@ -15,16 +15,16 @@ from benchlab.bench import Bench
 from benchlab.devices.interface import Device
 from benchlab.errors import BenchError
 from benchlab.runner.clock import Clock
+from benchlab.runner.empty import EMPTY_MPA
+from benchlab.workflows.bench_rest import WAIT_S, readings_at_rest
 
-READINGS, PERIOD_S = 25, 0.02
+READINGS = 25
+
 HIGH_SHARE = 0.04
 """A supply may be so much above the calibrated one, by the monitor's zero: 40 mV of 1 V, by which a regulator's own zero may wander."""
 
 HIGHEST_V = 5.75
 """More is no supply of an ATmega328P: its monitor is not there."""
-
-FULL_MPA, WAIT_S = 0.01, 5.0
-"""A bench with more than the first is not empty; it is waited for as long as the second."""
 
 
 def check_zero(device: Device, bench: Bench, clock: Clock) -> None:
@@ -36,9 +36,9 @@ def check_zero(device: Device, bench: Bench, clock: Clock) -> None:
         return
     clock.start()
     pressure, volts = _mean(device, clock)
-    while pressure > FULL_MPA and clock.now_s() < WAIT_S:
+    while pressure > EMPTY_MPA and clock.now_s() < WAIT_S:
         pressure, volts = _mean(device, clock)
-    if pressure > FULL_MPA:
+    if pressure > EMPTY_MPA:
         raise BenchError(
             f"the bench is vented, and its monitor shows {1000 * pressure:.1f} kPa after {WAIT_S:g} s",
             hint="let the air out, wait, or calibrate it again: is the monitor wired to A1, has its zero moved, is the supply lower?",
@@ -58,11 +58,8 @@ def check_zero(device: Device, bench: Bench, clock: Clock) -> None:
 
 
 def _mean(device: Device, clock: Clock) -> tuple[float, float]:
-    """Pressure and monitor volts over half a second; 0 MPa is asked for, which needs no arming. NaN where nothing was read."""
-    began, readings = clock.now_s(), []
-    for index in range(READINGS):
-        clock.wait_until(began + (index + 1) * PERIOD_S)
-        readings.append(device.exchange(clock.now_s(), 0.0))
+    """Pressure and monitor volts over half a second. NaN where nothing was read."""
+    readings = readings_at_rest(device, clock, READINGS)
     told = [(r.pressure_MPa, r.monitor_V) for r in readings if math.isfinite(r.pressure_MPa)]
     if not told:
         return math.nan, math.nan

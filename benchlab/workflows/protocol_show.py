@@ -121,10 +121,7 @@ def _fitting(plan: Plan, path: Path, calibration: Path) -> dict[str, Any]:
     from benchlab.protocol.checks import check_limits
 
     bench = read_bench(calibration)
-    try:
-        check_limits(plan, bench)
-    except InputError as error:
-        raise InputError(error.what, file=path, where=error.where, hint=error.hint) from error
+    check_limits(plan, bench, path)
     if plan.closed_loop and bench.flex is None:
         what = f"controls the angle, and the flex sensor of bench {bench.name} is not calibrated"
         raise InputError(what, file=path, hint="calibrate it with `benchlab control flex`")

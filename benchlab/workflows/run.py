@@ -13,11 +13,10 @@ import numpy as np
 from benchlab.bench import LimitError
 from benchlab.devices.interface import Device
 from benchlab.errors import InputError
-from benchlab.io.files import reason_of
+from benchlab.io.files import make_folder
 from benchlab.io.journal import JournalWriter
 from benchlab.runner.clock import Clock, RealClock, VirtualClock
 from benchlab.runner.end import RunEnd
-from benchlab.runner.guards.choice import guards_of
 from benchlab.runner.run import execute
 from benchlab.runner.stop import Stop, signals_to
 from benchlab.runner.tick import Tick
@@ -53,7 +52,7 @@ def drive(prepared: Prepared, stop: Stop, on_tick: Callable[[Tick], None] | None
     with signals_to(stop):
         device = open_prepared(prepared)
         try:
-            _make_folder(path.parent)
+            make_folder(path.parent)
             about = device.about()
             _check_ceiling(prepared, about)
             if prepared.spec.kind != "replay":  # whose supply was judged when it ran
@@ -81,7 +80,6 @@ def _executed(
 ) -> tuple[RunEnd, bool]:
     """The end, and whether the loop went before other programs."""
     clock: Clock = VirtualClock() if prepared.fast else RealClock()
-    guards = guards_of(prepared.bench, prepared.plan.rate_Hz, prepared.limits, prepared.expected_deg)
     with undisturbed(real_time=not prepared.fast) as went_first:
         end = execute(
             prepared.plan,
@@ -90,7 +88,7 @@ def _executed(
             journal,
             clock,
             prepared.controller,
-            guards,
+            prepared.guards(),
             on_tick,
             stop,
             prepared.limits,
@@ -108,13 +106,6 @@ def _check_ceiling(prepared: Prepared, about: dict[str, Any]) -> None:
             f"the protocol asks for {peak_MPa:.4g} MPa, and the firmware of this bench gives at most {ceiling_MPa:.4g} MPa",
             hint="ask for less, or flash what `benchlab bench firmware --calibration FILE` writes",
         )
-
-
-def _make_folder(folder: Path) -> None:
-    try:
-        folder.mkdir(exist_ok=True)
-    except OSError as error:
-        raise InputError(f"could not be made: {reason_of(error)}", file=folder, hint="choose another --out") from error
 
 
 def _closed(journal: JournalWriter) -> str:

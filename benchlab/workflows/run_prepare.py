@@ -17,6 +17,7 @@ from benchlab.errors import InputError, UsageError
 from benchlab.io.files import check_new_folder
 from benchlab.protocol.plan import Plan
 from benchlab.runner.guards.bend import expected_along, least_expected_deg
+from benchlab.runner.guards.choice import Guard, guards_of
 from benchlab.runner.guards.limits import Limits
 from benchlab.twin.curve import ResponseCurve
 from benchlab.twin.settings import TwinSettings
@@ -88,6 +89,10 @@ class Prepared:
             least_expected_deg if self.curve is None else expected_along(self.curve.pressure_MPa, self.curve.angle_deg)
         )
 
+    def guards(self) -> list[Guard]:
+        """New guards for one run: they remember what they saw."""
+        return guards_of(self.bench, self.plan.rate_Hz, self.limits, self.expected_deg)
+
     @property
     def suffixes(self) -> tuple[str, ...]:
         """Of the files that will be written."""
@@ -111,10 +116,7 @@ def prepare(protocol: str, settings: RunSettings) -> Prepared:
     twin = twin_of(spec, settings.seed, actuator)
     bench = bench_of(spec, settings.calibration, twin)
     plan, text, source = read_plan(protocol, settings)
-    try:
-        check_limits(plan, bench)
-    except InputError as error:
-        raise InputError(error.what, file=protocol, where=error.where, hint=error.hint) from error
+    check_limits(plan, bench, protocol)
     _check_rate(plan, spec)
     curve = actuator.curve if actuator is not None else None if twin is None else twin.curve
     chosen = choose(plan, bench, settings.control)

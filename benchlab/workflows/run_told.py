@@ -8,14 +8,12 @@ from typing import Any
 import numpy as np
 
 from benchlab.io.nexus import plain
-from benchlab.runner.guards.choice import guards_of
 from benchlab.workflows.run_prepare import Prepared
 
 
 def planned(prepared: Prepared) -> dict[str, Any]:
     """Plan, bench, guards, control, warnings and the files that would be written."""
     plan, bench = prepared.plan, prepared.bench
-    guards = guards_of(bench, plan.rate_Hz, prepared.limits, prepared.expected_deg)
     known = plan.pressure_MPa[np.isfinite(plan.pressure_MPa)]
     slews = [step.slew_MPa_per_s for step in plan.steps if step.slew_MPa_per_s is not None]
     found: dict[str, Any] = {
@@ -35,7 +33,7 @@ def planned(prepared: Prepared) -> dict[str, Any]:
         },
         "bench_spec": str(prepared.spec),
         "bench": {**asdict(bench), "ceiling_MPa": bench.ceiling_MPa, "ceiling_V": bench.volts(bench.ceiling_code)},
-        "guards": [guard.name for guard in guards],
+        "guards": [guard.name for guard in prepared.guards()],
         "guards_off": list(prepared.limits.off),
         "limits": asdict(prepared.limits),
         "control": prepared.control,

@@ -36,7 +36,6 @@ class Twin:
         self._plant = Plant(settings)
         self._steps = settings.effect(DacSteps) is not None
         self._armed = False
-        self._code = 0
         self._begun = False
         self._rows = array("d")
         self._triggers: list[float] = []
@@ -54,7 +53,7 @@ class Twin:
         self._armed = True
 
     def exchange(self, time_s: float, pressure_MPa: float, trigger: bool = False) -> Reading:
-        self._check(pressure_MPa)
+        code = self._code_of(pressure_MPa)
         plant = self._plant
         if not self._begun:
             self._begun = True
@@ -66,12 +65,12 @@ class Twin:
         plant.advance(time_s)
         if trigger:
             self._triggers.append(time_s)
-        reading = self._reading(time_s, pressure_MPa)
-        self._ask(pressure_MPa)
+        reading = self._reading(time_s, pressure_MPa, code)
+        self._ask(pressure_MPa, code)
         return reading
 
     def vent(self) -> None:
-        self._ask(0.0)
+        self._ask(0.0, self.bench.code(0.0))
         self._armed = False
 
     def faults(self) -> list[Fault]:
@@ -84,7 +83,8 @@ class Twin:
     def _ceiling_MPa(self) -> float:
         return min(self.bench.ceiling_MPa, self.settings.curve.last_MPa)
 
-    def _check(self, pressure_MPa: float) -> None:
+    def _code_of(self, pressure_MPa: float) -> int:
+        """The code for a pressure that may be asked for now."""
         if pressure_MPa > 0 and not self._armed:
             raise BenchError("the twin is vented and not armed", hint="arm it before a pressure is asked for")
         if pressure_MPa > self.settings.curve.last_MPa:
@@ -92,19 +92,18 @@ class Twin:
                 f"{pressure_MPa:g} MPa is beyond {self.settings.curve.last_MPa:g} MPa, where the twin's response curve ends",
                 hint="ask for less, or give a curve that goes further",
             )
-        self.bench.code(pressure_MPa)
+        return self.bench.code(pressure_MPa)
 
-    def _ask(self, pressure_MPa: float) -> None:
-        self._code = self.bench.code(pressure_MPa)
+    def _ask(self, pressure_MPa: float, code: int) -> None:
         if self._steps:
-            volts = SUPPLY_V * self._code / DAC_CODES
+            volts = SUPPLY_V * code / DAC_CODES
         else:
             volts = self.bench.regulator.inverse(pressure_MPa) * SUPPLY_V / self.bench.supply_V if pressure_MPa else 0.0
         setpoint = max(0.0, REGULATOR.of(volts))
         if setpoint != self._plant.setpoint_MPa:
             self._plant.ask(setpoint)
 
-    def _reading(self, time_s: float, pressure_MPa: float) -> Reading:
+    def _reading(self, time_s: float, pressure_MPa: float, code: int) -> Reading:
         plant, bench = self._plant, self.bench
         camera_deg = plant.seen("camera", plant.angle_deg)
         monitor_V = plant.seen("monitor_V", MONITOR.inverse(plant.seen("monitor", plant.regulator_MPa)))
@@ -122,5 +121,4 @@ class Twin:
             )
         )
         measured = math.nan if bench.monitor is None else bench.monitor.of(monitor_V)
-        code = bench.code(pressure_MPa)
         return Reading(measured, flex_V, code, time_s, _ARMED if self._armed else _IDLE, monitor_V)

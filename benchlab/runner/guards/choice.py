@@ -7,6 +7,7 @@ import typing
 from collections.abc import Callable
 
 from benchlab.bench import Bench
+from benchlab.runner.empty import FLEX_MARGIN_V
 from benchlab.runner.end import Cause
 from benchlab.runner.guards.bend import BendGuard, least_expected_deg
 from benchlab.runner.guards.device import DeviceGuard, FaultGuard
@@ -48,9 +49,9 @@ def guards_of(
             FollowGuard(limits),
         ]
     if bench.flex is not None:
-        high = bench.supply_V - 0.02
+        high = bench.supply_V - FLEX_MARGIN_V
         found += [
-            SensorGuard("flex sensor", "V", lambda tick: tick.reading.flex_V, 0.02, high, limits),
+            SensorGuard("flex sensor", "V", lambda tick: tick.reading.flex_V, FLEX_MARGIN_V, high, limits),
             BendGuard(limits, expected_deg),
             RestGuard(limits),
             SwingGuard(limits),
