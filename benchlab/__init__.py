@@ -17,6 +17,7 @@ The house has floors, and imports only go down (checked by import-linter in the 
     twin        response curve + effects -> a simulated bench
     actuator    the fabric-shelled design
     bench       volts <-> pressure, sensors, limits, as calibrated
+    cubic       a monotone curve through points, one cheap value at a time
     units       what a pressure or a length may be written in
     errors      what can go wrong, and with which exit code
 

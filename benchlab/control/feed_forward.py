@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import bisect
 import math
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from benchlab.control.pi import PI
+from benchlab.cubic import Cubic
 from benchlab.errors import InputError
 
 
@@ -28,8 +28,6 @@ class InverseCurve:
     """
 
     def __init__(self, pressure_MPa: ArrayLike, angle_deg: ArrayLike, ceiling_MPa: float = math.inf) -> None:
-        from scipy.interpolate import PchipInterpolator
-
         p, angle = np.asarray(pressure_MPa, dtype=float), np.asarray(angle_deg, dtype=float)
         if p.ndim != 1 or p.shape != angle.shape:
             raise InputError(f"a curve of {p.size} pressures and {angle.size} angles", hint="give one angle a pressure")
@@ -43,20 +41,15 @@ class InverseCurve:
             raise InputError("a response curve needs two points", hint="simulate more pressures")
         _check_growing(p, angle)
         self.clamped = 0
-        self._angles = angle.tolist()
-        self._coefficients: list[list[float]] = PchipInterpolator(angle, p).c.T.tolist()
-        self._ends = float(p[0]), float(p[-1])
+        self._first_deg, self._last_deg = float(angle[0]), float(angle[-1])
+        self._line = Cubic(angle, p)
 
     def __call__(self, angle_deg: float) -> float:
         """Pressure (MPa) at an angle (degrees); a few microseconds."""
-        angles = self._angles
-        if not angles[0] <= angle_deg <= angles[-1]:
+        if not self._first_deg <= angle_deg <= self._last_deg:
             self.clamped += 1
-            return self._ends[angle_deg > angles[-1]]
-        piece = min(bisect.bisect_right(angles, angle_deg), len(angles) - 1) - 1
-        x = angle_deg - angles[piece]
-        a, b, c, d = self._coefficients[piece]
-        return ((a * x + b) * x + c) * x + d
+            angle_deg = self._last_deg if angle_deg > self._last_deg else self._first_deg
+        return self._line.value(angle_deg)
 
 
 class FeedForward:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from benchlab.twin.cubic import Cubic
+from benchlab.cubic import Cubic
 from benchlab.twin.effects.catalogue import EFFECTS
 from benchlab.twin.effects.effect import PLACES, Kit, Now, Stage
 from benchlab.twin.settings import TwinSettings

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
+from benchlab.cubic import Cubic
 from benchlab.io.twin_file import read_twin
 from benchlab.report.figures import figure_class, save_png
 from benchlab.report.panels import BLUE, GREY
-from benchlab.twin.cubic import Cubic
 from benchlab.twin.effects.catalogue import EFFECTS, FAULTS
 from benchlab.twin.effects.effect import Effect
 from benchlab.twin.lines import FLEX

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from benchlab.twin.cubic import Cubic
+from benchlab.cubic import Cubic
 from benchlab.twin.effects.effect import Effect, Kit, Now, Stage, follow, number
 
 ATMOSPHERE_MPa = 0.1013

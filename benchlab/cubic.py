@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from bisect import bisect_right
 
-from scipy.interpolate import PchipInterpolator
-
-from benchlab.units import FloatArray
+import numpy as np
+from numpy.typing import NDArray
 
 
 class Cubic:
     """The PCHIP interpolant of y over x, (P,) each, x strictly increasing: monotone where the data are, so that nothing overshoots
     (Fritsch and Butland 1984). Outside of the first and last x, the value there.
 
-    >>> import numpy as np
     >>> line = Cubic(np.array([0.0, 1.0, 2.0]), np.array([0.0, 2.0, 4.0]))
     >>> line.value(1.5), line.slope(0.5), line.value(9.0)
     (3.0, 2.0, 4.0)
     """
 
-    def __init__(self, x: FloatArray, y: FloatArray) -> None:
+    def __init__(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> None:
+        from scipy.interpolate import PchipInterpolator
+
         self._x: list[float] = x.tolist()
         self._pieces: list[list[float]] = PchipInterpolator(x, y).c.T.tolist()
         self._last = len(self._pieces) - 1

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import PchipInterpolator
 
-from benchlab.twin.cubic import Cubic
+from benchlab.cubic import Cubic
 
 X = np.array([0.0, 0.1, 0.15, 0.3, 0.35])
 Y = np.array([0.0, 40.0, 41.0, 100.0, 100.0])
