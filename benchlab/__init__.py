@@ -15,13 +15,14 @@ The house has floors, and imports only go down (checked by import-linter in the 
     protocol    segments -> plan: pressure or reference angle, tick by tick
     control     flex sensor, plant -> gains; PI and feed-forward; tracking
     twin        response curve + effects -> a simulated bench
+    discrepancy where simulation and measurement disagree, and which effect is missing
     actuator    the fabric-shelled design
     bench       volts <-> pressure, sensors, limits, as calibrated
     cubic       a monotone curve through points, one cheap value at a time
     units       what a pressure or a length may be written in
     errors      what can go wrong, and with which exit code
 
-(runner and report are one floor, devices and io another, and vision to twin a floor of numeric kernels; rooms on one floor
+(runner and report are one floor, devices and io another, and vision to discrepancy a floor of numeric kernels; rooms on one floor
 do not see each other.)
 
 See:      video -> frames -> markers -> linked tracks -> circle -> curvature series -> result file -> picture.
@@ -29,6 +30,7 @@ Measure:  export of a testing machine -> columns in N, mm, s -> cycles -> blocke
 Compare:  study file -> angle of each cycle of each sample -> ANOVA, pairs, components -> report.
 Drive:    protocol file -> plan -> checks -> runner -> device + journal -> drive file -> picture.
 Predict:  design + layup -> pieces -> laminates on a mesh -> cell -> path of states -> response curves -> files, pictures.
+Explain:  runs of samples + simulated curves -> features -> scatter of the samples -> effects fitted -> verdict -> model file, report, next protocol.
 """
 
 from importlib.metadata import version

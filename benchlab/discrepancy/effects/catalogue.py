@@ -1,0 +1,1 @@
+"""The vocabulary: every effect by its name, those of users too."""
