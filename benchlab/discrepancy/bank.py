@@ -1,0 +1,146 @@
+"""Directions in which the data would move: of every effect of the vocabulary, at several strengths, and of misfits of no particular name."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchlab.discrepancy.effects.effect import Active, Effect
+from benchlab.discrepancy.problem import Problem, off
+from benchlab.units import FloatArray
+
+DRAWS = 400
+MOST_STARTS = 12
+"""Combinations of starting values of one effect."""
+
+
+@dataclass(frozen=True)
+class Bank:
+    """actives: K candidates, each one effect at one strength in one form. directions: (C, K), whitened: what each does to the base."""
+
+    actives: tuple[Active, ...]
+    directions: FloatArray
+
+    def of(self, names: Sequence[str]) -> Bank:
+        """Those of the effects named."""
+        keep = [i for i, active in enumerate(self.actives) if active.name in names]
+        return Bank(tuple(self.actives[i] for i in keep), self.directions[:, keep])
+
+
+def bank_of(problem: Problem, effects: Sequence[Effect]) -> Bank:
+    """Every effect alone, in each of its forms, from each of its starting values."""
+    actives, directions = [], []
+    for effect in effects:
+        for form, values in itertools.product(effect.forms, starts_of(effect)):
+            active = Active(effect, values, form)
+            direction = problem.model((active,)) - problem.base
+            if np.isfinite(direction).all() and float(direction @ direction) > 1e-8:
+                actives.append(active)
+                directions.append(direction)
+    columns = np.array(directions).T if directions else np.zeros((len(problem.whitened), 0))
+    return Bank(tuple(actives), columns)
+
+
+def starts_of(effect: Effect) -> list[dict[str, float]]:
+    """Starting values of all parameters together, the first MOST_STARTS of their combinations."""
+    names = [parameter.name for parameter in effect.parameters]
+    grids = [parameter.starts or (parameter.typical,) for parameter in effect.parameters]
+    combined = [dict(zip(names, map(float, values))) for values in itertools.product(*grids)]
+    step = max(1, -(-len(combined) // MOST_STARTS))
+    return combined[::step]
+
+
+@dataclass(frozen=True)
+class Scan:
+    """t: (K,) along each direction; p: of the largest being there by scatter alone, all directions considered; best: its index, −1 without any."""
+
+    t: FloatArray
+    p: float
+    largest: float
+    best: int
+
+
+def scan(
+    problem: Problem,
+    directions: FloatArray,
+    residual: FloatArray,
+    tangent: FloatArray,
+    generator: np.random.Generator,
+    multiplier: float = 1.0,
+    draws: int = DRAWS,
+) -> Scan:
+    """Is there more in the residual (C,) than scatter, along the directions (C, K) as far as the tangent (C, q) does not span them?"""
+    free = off(directions, tangent)
+    kept = (free**2).sum(axis=0) > 1e-4 * np.maximum((directions**2).sum(axis=0), 1e-12)
+    if not kept.any():
+        return Scan(np.zeros(directions.shape[1]), 1.0, 0.0, -1)
+    t = np.zeros(directions.shape[1])
+    t[kept] = problem.t_values(free[:, kept], residual)
+    best = int(np.argmax(t))
+    noise = problem.largest_t_of_noise(free[:, kept], generator, draws)
+    p = (1 + int((noise >= t[best] / multiplier).sum())) / (draws + 1)
+    return Scan(t, p, float(t[best]), best)
+
+
+def flexible(problem: Problem) -> FloatArray:
+    """(C, K): misfits of no particular name: of each kind of run, direction, cycle and design, shapes over pressure and time; both signs."""
+    features = problem.features.features
+    pressure = np.array([feature.pressure_MPa for feature in features])
+    x = pressure / max(float(pressure.max()), 1e-12)
+    quantity = np.array([feature.quantity for feature in features])
+    design = np.array([feature.design for feature in features])
+    kind = np.array([f"{feature.kind} {feature.occurrence}" for feature in features])
+    direction = np.array([feature.direction for feature in features])
+    cycle = np.array([feature.cycle for feature in features])
+    late = np.array([np.log1p(max(feature.time_s, 0.0)) for feature in features])
+    base = _feature_base(problem)
+    shapes = [np.ones_like(x), x, x**2, x**3, np.sin(2 * np.pi * x)]
+    columns = []
+    for name in sorted(set(quantity)):
+        mine = quantity == name
+        size = max(float(np.abs(base[mine]).max()), 1e-9)
+        local = np.array(
+            [
+                max(float(np.abs(base[mine & (design == d)]).max(initial=0.0)), 1e-3 * size)
+                for d in range(design.max() + 1)
+            ]
+        )
+        scale = local[design]
+        groups = [mine]
+        for labels in (design, kind, direction, cycle):
+            values = sorted(set(labels[mine]))
+            groups += [mine & (labels == value) for value in values if len(values) > 1]
+        groups += [
+            mine & (kind == k) & (direction == way)
+            for k in sorted(set(kind[mine]))
+            for way in sorted(set(direction[mine]))
+        ]
+        groups += [mine & (kind == k) & (cycle == c) for k in sorted(set(kind[mine])) for c in sorted(set(cycle[mine]))]
+        for group in groups:
+            if group.any():
+                columns += [group * scale * shape for shape in shapes]
+        holds = mine & (direction == "hold")
+        if holds.any():
+            columns += [holds * scale * late]
+        columns += [
+            mine * (design == d) * (direction == way) * scale * shape
+            for d in set(design)
+            for way in set(direction)
+            for shape in shapes[:3]
+        ]
+    stacked = np.array([column for column in columns if np.any(column)])[:, problem.features.feature].T
+    white = problem.whiten(stacked)
+    sizes = np.sqrt((white**2).sum(axis=0))
+    white = white[:, sizes > 1e-9] / sizes[sizes > 1e-9]
+    return np.concatenate([white, -white], axis=1)
+
+
+def _feature_base(problem: Problem) -> FloatArray:
+    """(F,): what the base gives, on average over samples."""
+    cells = problem.cells(())
+    number = np.bincount(problem.features.feature, minlength=len(problem.features.features))
+    total = np.bincount(problem.features.feature, cells, minlength=len(number))
+    return np.asarray(total / np.maximum(number, 1))

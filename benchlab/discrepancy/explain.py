@@ -1,0 +1,168 @@
+"""The whole way: what was measured and what was simulated, in; where they disagree, what is missing, and how much of it is closed, out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from benchlab.discrepancy.base import Base
+from benchlab.discrepancy.candidates import p_enough
+from benchlab.discrepancy.effects.effect import Effect
+from benchlab.discrepancy.explanation import Curves, Explanation, Found, Gap, Tried
+from benchlab.discrepancy.fit import Fit, nothing
+from benchlab.discrepancy.heldout import held_out, noise_floor, together
+from benchlab.discrepancy.identify import Identified, identify, share_explained
+from benchlab.discrepancy.intervals import estimates
+from benchlab.discrepancy.locate import gap_p, gaps, regions
+from benchlab.discrepancy.measured import Measured, Summary
+from benchlab.discrepancy.prepare import prepared
+from benchlab.discrepancy.problem import Problem
+from benchlab.discrepancy.remainder import remainder_words
+from benchlab.discrepancy.rules import Rules
+from benchlab.units import FloatArray
+
+
+@dataclass(frozen=True)
+class Explained:
+    """The explanation, and what further steps need: the problem that was solved and the fits."""
+
+    explanation: Explanation
+    problem: Problem
+    identified: Identified
+
+
+def explain(
+    measured: Measured | Summary,
+    base: Base,
+    effects: Mapping[str, Effect],
+    seed: int = 1,
+    rules: Rules | None = None,
+    progress: Callable[[str], None] | None = None,
+) -> Explained:
+    """Explain the gap between what was measured and the base. seed: of the bootstrap. Raises InputError where the data cannot carry a verdict."""
+    tell = progress or (lambda _: None)
+    tell("features and scatter of the samples")
+    problem, warnings = prepared(measured, base)
+    generator = np.random.default_rng(seed)
+    refused = {name: reason for name, effect in effects.items() if (reason := effect.cannot_show(problem.scene))}
+    usable = [effect for name, effect in effects.items() if name not in refused]
+    found = identify(problem, usable, generator, rules, progress)
+    tell("where they disagree")
+    bare = problem.cells(())
+    gap, p = gaps(problem, bare), gap_p(problem, bare, generator)
+    tell("held-out samples, designs and rates")
+    parts = held_out(problem, found.best)
+    after = gaps(problem, problem.cells(found.best.actives))
+    summary = isinstance(measured, Summary)
+    explanation = Explanation(
+        verdict=found.verdict,
+        where=regions(problem, gap, p),
+        effects=_effects(problem, found),
+        rivals=tuple(one.names for one in found.rivals) if found.verdict == "ambiguous" else (),
+        gap=_gap(problem, gap, after, parts, summary),
+        p_gap=found.p_gap,
+        false_naming=(rules or Rules()).first,
+        tried=_tried(problem, found),
+        judged_not=refused,
+        remainder=remainder_words(problem, found, after),
+        held_out=parts,
+        curves=_curves(problem, gap, after, p),
+        warnings=warnings,
+        base=base.source,
+        source=measured.source,
+        simulated=not summary and measured.simulated,
+        samples=problem.samples,
+    )
+    return Explained(explanation, problem, found)
+
+
+def _effects(problem: Problem, found: Identified) -> tuple[Found, ...]:
+    """The effects of the best model; none where there is no name to give."""
+    if found.verdict in ("agree", "unexplained") or not found.best.actives:
+        return ()
+    numbers = estimates(problem, list(found.forms) or [found.best])
+    order = [active.name for active in (found.forms[0] if found.forms else found.best).actives]
+    out = []
+    for place, active in enumerate(found.best.actives):
+        others = tuple(
+            {a.form for one in found.forms[1:] for a in one.actives if a.name == active.name} - {active.form}
+        )
+        share = found.share if len(found.best.actives) == 1 else _share_of(problem, found.best, place)
+        out.append(Found(active.name, active.form, numbers[order.index(active.name)], share, tuple(sorted(others))))
+    return tuple(out)
+
+
+def _share_of(problem: Problem, best: Fit, place: int) -> float:
+    """Share of the gap that goes with one effect: explained with it, less what is explained when it is switched off."""
+    bare = nothing(problem)
+    rest = tuple(active for i, active in enumerate(best.actives) if i != place)
+    model = problem.model(rest)
+    residual = problem.whitened - model
+    without = replace(best, actives=rest, model=model, residual=residual, misfit=float(residual @ residual))
+    return max(share_explained(problem, bare, best) - share_explained(problem, bare, without), 0.0)
+
+
+def _gap(problem: Problem, gap: FloatArray, after: FloatArray, parts: tuple, summary: bool) -> Gap:
+    rms_before, rms_after = (float(np.sqrt(np.mean(values**2))) for values in (gap, after))
+    variance = np.empty(len(gap))
+    number = np.bincount(problem.features.feature, minlength=len(gap))
+    for where, covariance in zip(problem.scatter.features_of, problem.scatter.covariance):
+        variance[where] = np.diag(covariance) / np.maximum(number[where], 1)
+    floor = float(np.sqrt(np.mean(variance))) if summary else noise_floor(problem)
+    kind = "design" if summary else "sample"
+    return Gap(
+        rmse_before=rms_before,
+        rmse_after=rms_after,
+        heldout_before=together(parts, kind, lambda part: part.before),
+        heldout_after=together(parts, kind, lambda part: part.after),
+        noise_floor=floor,
+        ceiling=float(np.clip(1 - np.mean(variance) / max(rms_before**2, 1e-300), 0.0, 1.0)),
+    )
+
+
+def _tried(problem: Problem, found: Identified) -> tuple[Tried, ...]:
+    bare = nothing(problem)
+    rows = []
+    for one in found.tried:
+        p, t = p_enough(problem, one, found.best)
+        inside = any(one is rival for rival in found.rivals)
+        reason = (
+            "the best"
+            if one is found.best
+            else "not told apart from the best"
+            if inside
+            else f"its residual points to the best by {t:.1f} standard errors"
+        )
+        form = ", ".join(active.form for active in one.actives)
+        rows.append(
+            Tried(one.names, form, one.misfit - bare.misfit, share_explained(problem, bare, one), p, inside, reason)
+        )
+    return tuple(rows)
+
+
+def _curves(problem: Problem, gap: FloatArray, after: FloatArray, p: FloatArray) -> Curves:
+    features, kinds = problem.features, problem.features.kinds
+    rows = features.features
+    number = np.bincount(features.feature, minlength=len(rows))
+    mean = np.bincount(features.feature, features.value, minlength=len(rows)) / np.maximum(number, 1)
+    squares = np.bincount(features.feature, (features.value - mean[features.feature]) ** 2, minlength=len(rows))
+    return Curves(
+        design=np.array([problem.scene.names[row.design] for row in rows]),
+        quantity=np.array([row.quantity for row in rows]),
+        kind=np.array(
+            [kinds[row.kind].words + (f", run {row.occurrence + 1} of these" if row.occurrence else "") for row in rows]
+        ),
+        direction=np.array([row.direction for row in rows]),
+        cycle=np.array([row.cycle for row in rows]),
+        rate_MPa_s=np.array([row.rate_MPa_s for row in rows]),
+        pressure_MPa=np.array([row.pressure_MPa for row in rows]),
+        time_s=np.array([row.time_s for row in rows]),
+        measured=mean,
+        sd=np.where(number > 1, np.sqrt(squares / np.maximum(number - 1, 1)), np.nan),
+        n=number.astype(float),
+        simulated=mean - gap,
+        explained=mean - after,
+        p=p,
+    )

@@ -1,0 +1,74 @@
+"""Before and after on what the fit has not seen: samples, designs and kinds of runs left out in turn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchlab.discrepancy.explanation import HeldOut
+from benchlab.discrepancy.fit import Fit, fit
+from benchlab.discrepancy.problem import Problem
+from benchlab.units import FloatArray
+
+FOLDS = 5
+STEPS = 4
+
+
+def held_out(problem: Problem, best: Fit) -> tuple[HeldOut, ...]:
+    """Samples (in FOLDS folds, a part of each design's at a time), designs and kinds of runs, each left out, refitted without and predicted."""
+    return tuple(_one(problem, best, *fold) for fold in _folds(problem))
+
+
+def _folds(problem: Problem) -> Iterator[tuple[str, str, NDArray[np.bool_]]]:
+    features = problem.features
+    rank = np.zeros(problem.samples, dtype=int)
+    for design in np.unique(features.sample_design):
+        mine = np.flatnonzero(features.sample_design == design)
+        rank[mine] = np.arange(len(mine)) % FOLDS
+    for fold in np.unique(rank):
+        yield "sample", f"fold {fold + 1}", rank[features.sample] == fold
+    design_of = np.array([feature.design for feature in features.features])[features.feature]
+    kind_of = np.array([feature.kind for feature in features.features])[features.feature]
+    for number, name in enumerate(problem.scene.names):
+        yield "design", name, design_of == number
+    for number, kind in enumerate(features.kinds):
+        yield "rate", kind.words, kind_of == number
+
+
+def _one(problem: Problem, best: Fit, kind: str, what: str, left: NDArray[np.bool_]) -> HeldOut:
+    before = _rmse(problem, problem.cells(()), left)
+    floor = noise_floor(problem, left)
+    if not best.actives or left.all() or not left.any():
+        return HeldOut(kind, what, before, before if not best.actives else np.nan, floor)
+    rest = replace(problem, features=problem.features.only(~left))
+    refitted = fit(rest, best.actives, steps=STEPS)
+    return HeldOut(kind, what, before, _rmse(problem, problem.cells(refitted.actives), left), floor)
+
+
+def _rmse(problem: Problem, cells: FloatArray, where: NDArray[np.bool_]) -> float:
+    if not where.any():
+        return np.nan
+    return float(np.sqrt(np.mean((problem.features.value[where] - cells[where]) ** 2)))
+
+
+def noise_floor(problem: Problem, where: NDArray[np.bool_] | None = None) -> float:
+    """RMS of a sample about the mean of its design, without the bias of the mean: what a model without fault would reach on a new sample."""
+    features = problem.features
+    number = np.bincount(features.feature, minlength=len(features.features))
+    means = np.bincount(features.feature, features.value, minlength=len(number)) / np.maximum(number, 1)
+    n = number[features.feature]
+    usable = (n > 1) if where is None else (n > 1) & where
+    if not usable.any():
+        return np.nan
+    off = (features.value - means[features.feature])[usable]
+    return float(np.sqrt(np.mean(off**2 * n[usable] / (n[usable] - 1))))
+
+
+def together(parts: tuple[HeldOut, ...], kind: str, value: Callable[[HeldOut], float]) -> float:
+    """RMS over the parts of one kind."""
+    found = np.array([value(part) for part in parts if part.kind == kind])
+    found = found[np.isfinite(found)]
+    return float(np.sqrt(np.mean(found**2))) if len(found) else np.nan

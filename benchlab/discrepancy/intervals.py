@@ -1,0 +1,58 @@
+"""How well the data know the parameters: from the samples' own scatter about the fit."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import stats
+
+from benchlab.discrepancy.explanation import Estimate
+from benchlab.discrepancy.fit import Fit, scale_of
+from benchlab.discrepancy.problem import PRIOR_FREEDOM, Problem
+from benchlab.units import FloatArray
+
+LEVEL = 0.95
+
+
+def standard_errors(problem: Problem, fit: Fit) -> FloatArray:
+    """(q,): of the scaled parameters; covariance H⁻¹ M H⁻¹ with the scores' scatter between samples M, moderated by the fitted scatter H
+    (sandwich estimate; White 1982, samples as clusters)."""
+    tangent = fit.tangent
+    hessian = tangent.T @ tangent
+    scores = problem.per_sample(tangent * fit.residual[:, None])
+    design = problem.features.sample_design
+    n = np.bincount(design)[design]
+    several = n > 1
+    deviation = problem._within @ scores
+    weighted = deviation * np.sqrt(np.where(several, n / np.maximum(n - 1, 1), 0.0))[:, None]
+    freedom = problem.scatter.freedom
+    own = weighted.T @ weighted * (problem.samples / max(int(several.sum()), 1))
+    meat = (PRIOR_FREEDOM * hessian + freedom * own) / (PRIOR_FREEDOM + freedom)
+    inverse = np.linalg.pinv(hessian, rcond=1e-10)
+    return np.asarray(np.sqrt(np.maximum(np.diag(inverse @ meat @ inverse), 0.0)))
+
+
+def estimates(problem: Problem, fits: list[Fit]) -> list[dict[str, Estimate]]:
+    """For each effect of the first fit, its parameters with intervals that cover those of the other fits (other forms of the same effects)."""
+    quantile = float(stats.t.ppf(0.5 + LEVEL / 2, problem.freedom))
+    out: list[dict[str, Estimate]] = []
+    for number, one in enumerate(fits):
+        errors = standard_errors(problem, one)
+        place = 0
+        for effect, active in enumerate(one.actives):
+            if number == 0:
+                out.append({})
+            for parameter in active.effect.parameters:
+                half = quantile * errors[place] * scale_of(parameter)
+                value = active.values[parameter.name]
+                low, high = max(value - half, parameter.low), min(value + half, parameter.high)
+                if number == 0:
+                    edge = 1e-6 * (parameter.high - parameter.low)
+                    bound = value <= parameter.low + edge or value >= parameter.high - edge
+                    out[effect][parameter.name] = Estimate(value, low, high, parameter.unit, parameter.what, bound)
+                else:
+                    kept = out[effect][parameter.name]
+                    out[effect][parameter.name] = Estimate(
+                        kept.value, min(kept.low, low), max(kept.high, high), kept.unit, kept.what, kept.at_bound
+                    )
+                place += 1
+    return out

@@ -1,0 +1,68 @@
+"""What is left beside the model, and what it depends on, in words."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from benchlab.discrepancy.identify import Identified
+from benchlab.discrepancy.problem import Problem
+from benchlab.units import FloatArray
+
+STANDS_OUT = 0.1
+"""Share of the remainder's variance from which a dependence is told."""
+
+
+def remainder_words(problem: Problem, found: Identified, left: FloatArray) -> tuple[str, ...]:
+    """What the remainder (F,) depends on, where there is one; empty where nothing but scatter is left."""
+    if found.p_left > 0.05 or len(left) < 8:
+        return ()
+    features = problem.features.features
+    pressure = np.array([feature.pressure_MPa for feature in features])
+    labels = {
+        "the design": np.array([feature.design for feature in features]),
+        "the kind of run": np.array([feature.kind for feature in features]),
+        "the direction": np.array([feature.direction for feature in features]),
+        "the cycle": np.array([feature.cycle for feature in features]),
+        "the place of the run on its sample": np.array([feature.occurrence for feature in features]),
+        "pressure": np.digitize(pressure, np.quantile(pressure, [0.2, 0.4, 0.6, 0.8])),
+    }
+    rms = float(np.sqrt(np.mean(left**2)))
+    shares = {name: _between(left, values) for name, values in labels.items()}
+    words = [
+        f"{share:.0%} of it goes with {name}: {_extremes(problem, name, labels[name], left)}"
+        for name, share in sorted(shares.items(), key=lambda item: -item[1])
+        if share > STANDS_OUT
+    ]
+    return (
+        f"{rms:.2g} RMS is left, more than scatter (p = {found.p_left:.2g})",
+        *(words or ["it depends on nothing simple"]),
+    )
+
+
+def _between(values: FloatArray, labels: np.ndarray) -> float:
+    """Share of the mean square that means of groups take, beyond what chance gives them."""
+    total = float(np.sum(values**2))
+    groups = np.unique(labels)
+    if len(groups) < 2 or total == 0:
+        return 0.0
+    taken = sum(float(np.sum(labels == g) * np.mean(values[labels == g]) ** 2) for g in groups)
+    common = len(values) * float(np.mean(values)) ** 2
+    return (taken - common) / total
+
+
+def _extremes(problem: Problem, name: str, labels: np.ndarray, left: FloatArray) -> str:
+    means = {value: float(np.mean(left[labels == value])) for value in np.unique(labels)}
+    low, high = min(means, key=lambda v: means[v]), max(means, key=lambda v: means[v])
+    return f"{means[low]:+.2g} on average for {_word(problem, name, low)}, {means[high]:+.2g} for {_word(problem, name, high)}"
+
+
+def _word(problem: Problem, name: str, value: object) -> str:
+    if name == "the design":
+        return problem.scene.names[int(value)]  # type: ignore[call-overload]
+    if name == "the kind of run":
+        return f"runs {problem.features.kinds[int(value)].words}"  # type: ignore[call-overload]
+    if name == "pressure":
+        return ("the lowest", "low", "middle", "high", "the highest")[int(value)] + " pressures"  # type: ignore[call-overload]
+    if name == "the place of the run on its sample":
+        return f"run {int(value) + 1}"  # type: ignore[call-overload]
+    return f"cycle {value}" if name == "the cycle" else str(value)
