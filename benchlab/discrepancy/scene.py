@@ -49,6 +49,19 @@ class Scene:
         shapes = [self.base.designs[name].shape for name in self.names]
         return np.array([np.nan if shape is None else shape.length_mm for shape in shapes])[self.design]
 
+    @property
+    def lengths_known(self) -> bool:
+        return bool(np.isfinite(self.length_mm).all())
+
+    @property
+    def ordered(self) -> bool:
+        """Whether some run is known to be later than another on its sample."""
+        return bool(self._earlier.any())
+
+    def full(self, quantity: str) -> FloatArray:
+        """(R,): simulated quantity at the end of each design's curve."""
+        return np.array([self.base.designs[name].curves[quantity][-1] for name in self.names])[self.design]
+
     def has(self, quantity: str) -> bool:
         """Whether every design has a curve of this quantity."""
         return all(quantity in self.base.designs[name].curves for name in self.names)
@@ -76,21 +89,26 @@ class Scene:
     ) -> FloatArray:
         """First-order lag of (T, R) values, exact where they go straight between points. start: (R,), the first values unless given.
 
-        time_constant_s: a number or (T, R).
+        time_constant_s: a number or (T, R); 0 is no lag.
         """
-        with np.errstate(divide="ignore", invalid="ignore"):
-            steps = self.dt_s / time_constant_s
-        gone = -np.expm1(-steps)  # share of a step that is followed within dt
-        mean = np.where(steps > 1e-6, 1 - gone / np.where(steps > 1e-6, steps, 1), steps / 2)
-        mean = np.where(np.isinf(steps), 1.0, mean)
-        out = np.empty_like(value)
-        state = value[0] if start is None else start
-        out[0] = state
-        for i in range(1, len(value)):
-            before, now = value[i - 1], value[i]
-            state = state + gone[i] * (before - state) + mean[i] * (now - before)
-            out[i] = state
-        return out
+        return _follow(value, self.dt_s, time_constant_s, value[0] if start is None else start)
+
+    def follow_several(self, value: FloatArray, time_constants_s: FloatArray) -> FloatArray:
+        """(T, R): mean of the first-order lags of (T, R) values with each of the time constants (K,), each from the first values."""
+        each = np.broadcast_to(value[:, None], (len(value), len(time_constants_s), value.shape[1]))
+        return np.asarray(
+            _follow(each, self.dt_s[:, None], np.asarray(time_constants_s)[:, None], each[0]).mean(axis=1)
+        )
+
+    def delayed(self, value: FloatArray, delay_s: float) -> FloatArray:
+        """(T, R) values as they were delay_s before (after, where it is negative), straight between points; still beyond a run's ends."""
+        if delay_s == 0:
+            return value
+        apart = 2 * (np.max(self.time_s) + abs(delay_s)) + 1
+        runs = apart * np.arange(value.shape[1])
+        asked = np.clip(self.time_s - delay_s, 0, self.time_s[-1]) + runs
+        known = (self.time_s + runs).T.ravel()
+        return np.interp(asked.T.ravel(), known, value.T.ravel()).reshape(value.T.shape).T
 
     def play(self, value: FloatArray, half_width: FloatArray | float, start: FloatArray | None = None) -> FloatArray:
         """Backlash: the output stands still while the input moves within ± half_width (a number or (T, R)) of it."""
@@ -109,12 +127,73 @@ class Scene:
 
     def before(self, last: FloatArray, none: float) -> FloatArray:
         """(R,): largest of (R,) values over the earlier runs of each run's sample; `none` for a first or unordered run."""
-        out = np.full(len(last), none)
-        for run in np.flatnonzero(np.isfinite(self.order)):
-            earlier = (self.sample == self.sample[run]) & (self.order < self.order[run])
-            if earlier.any():
-                out[run] = last[earlier].max()
+        return np.asarray(np.where(self._earlier, last, none).max(axis=1, initial=none))
+
+    def sum_before(self, last: FloatArray) -> FloatArray:
+        """(R,): sum of (R,) values over the earlier runs of each run's sample; 0 for a first or unordered run."""
+        return np.asarray(self._earlier @ last)
+
+    @cached_property
+    def _earlier(self) -> NDArray[np.bool_]:
+        """(R, R): whether the run of the column came before that of the row, on the same sample."""
+        return (self.sample[:, None] == self.sample) & (self.order < self.order[:, None])
+
+    @cached_property
+    def hold_s(self) -> FloatArray:
+        """(T, R): time since the pressure stands still, 0 where it does not.
+
+        Still: within ±1.5 % of the scene's largest pressure for 2 s and a twentieth of the run at least, above 5 % of it.
+        """
+        out = np.zeros_like(self.time_s)
+        largest = float(np.max(self.pressure_MPa))
+        for run in range(out.shape[1]):
+            time, pressure = self.time_s[:, run], self.pressure_MPa[:, run]
+            shortest, first = max(2.0, time[-1] / 20), 0
+            while first < len(time):
+                near = np.abs(pressure[first:] - pressure[first]) <= 0.015 * largest
+                end = first + (len(near) if near.all() else int(np.argmin(near)))
+                if pressure[first] > 0.05 * largest and time[end - 1] - time[first] >= shortest:
+                    out[first:end, run] = time[first:end] - time[first]
+                    first = end
+                else:
+                    first += 1
         return out
+
+    @cached_property
+    def holds(self) -> bool:
+        return bool(self.hold_s.any())
+
+    @cached_property
+    def goes_back(self) -> bool:
+        """Whether the pressure falls in some run, by a tenth of the largest at least."""
+        fallen = np.maximum.accumulate(self.pressure_MPa, axis=0) - self.pressure_MPa
+        return bool(fallen.max() > 0.1 * self.pressure_MPa.max())
+
+    @cached_property
+    def comes_again(self) -> bool:
+        """Whether some sample is loaded more than once: in runs whose order is known, or within one."""
+        return self.ordered or self.goes_back
+
+    @cached_property
+    def rates_differ(self) -> bool:
+        """Whether some runs rise more than 1.5 times as fast as others (mean rate to the run's largest pressure)."""
+        peak = np.argmax(self.pressure_MPa, axis=0)
+        runs = np.arange(len(peak))
+        time = self.time_s[peak, runs]
+        moved = time > 0
+        if not moved.any():
+            return False
+        rate = (self.pressure_MPa[peak, runs] - self.pressure_MPa[0])[moved] / time[moved]
+        return bool(rate.max() > 1.5 * max(rate.min(), 1e-12))
+
+    @property
+    def shows_time(self) -> str:
+        """Why a lag could not be told from a curve of another shape; empty where it can."""
+        if not self.dt_s.any():
+            return "there is no course in time"
+        if not (self.goes_back or self.holds or self.rates_differ):
+            return "all runs go up at one rate: no unloading, no hold, no second rate"
+        return ""
 
     @cached_property
     def _top(self) -> float:
@@ -144,15 +223,16 @@ class Scene:
         found = {}
         for knob in filter(self.has_knob, KNOBS):
             tables = [self.base.designs[name].knobs[knob] for name in self.names]
-            first, last = max(t.values[0] for t in tables), min(t.values[-1] for t in tables)
-            values = np.linspace(first, last, VALUES)
+            lowest, last = max(t.values[0] for t in tables), min(t.values[-1] for t in tables)
+            values = np.linspace(lowest, last, VALUES)
             for quantity in self._curves:
                 if all(quantity in t.factor for t in tables):
                     logs = []
                     for name, t in zip(self.names, tables):
                         over_p = np.stack([self._smooth(name, row) for row in np.log(t.factor[quantity])])
                         logs.append(CubicSpline(t.values, over_p, axis=0)(values))
-                    found[knob, quantity] = (first, float(values[1] - values[0]), np.stack(logs))
+                    first, step = float(values[0]), float(values[1] - values[0])
+                    found[knob, quantity] = (first, step, _none_at(KNOBS[knob][0], first, step, np.stack(logs)))
         return found
 
     def knob_range(self, knob: str) -> tuple[float, float]:
@@ -196,3 +276,26 @@ class Scene:
             return start + share * (logs[self.design, which, low + 1] - start)
 
         return np.exp(at(row) * (1 - part) + at(row + 1) * part)
+
+
+def _follow(value: FloatArray, dt_s: FloatArray, time_constant_s: FloatArray | float, start: FloatArray) -> FloatArray:
+    """First-order lag along the first axis; dt_s broadcasts to the values."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        steps = dt_s / time_constant_s
+        steps = np.where(dt_s == 0, np.inf if np.all(time_constant_s == 0) else 0.0, steps)
+    gone = -np.expm1(-steps)  # share of a step that is followed within dt
+    mean = np.where(steps > 1e-6, 1 - gone / np.where(steps > 1e-6, steps, 1), steps / 2)
+    mean = np.where(np.isinf(steps), 1.0, mean)
+    moves = mean[1:] * np.diff(value, axis=0)
+    out = np.empty(np.broadcast_shapes(value.shape, steps.shape))
+    state = out[0] = start
+    for i, (share, move) in enumerate(zip(gone[1:], moves)):
+        state = out[i + 1] = state + share * (value[i] - state) + move
+    return out
+
+
+def _none_at(neutral: float, first: float, step: float, logs: FloatArray) -> FloatArray:
+    """Logarithms of factors (D, VALUES, PRESSURES) such that there is none at the neutral value, which may lie between two of them."""
+    row = int(np.clip((neutral - first) / step, 0, VALUES - 2))
+    part = (neutral - first) / step - row
+    return np.asarray(logs - (logs[:, [row]] * (1 - part) + logs[:, [row + 1]] * part))

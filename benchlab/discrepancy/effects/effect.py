@@ -9,6 +9,10 @@ from typing import ClassVar
 from benchlab.discrepancy.scene import Scene
 from benchlab.units import FloatArray
 
+UNKNOWN_DESIGN = "the designs' dimensions are not known, so the base cannot tell how this piece of the structure acts"
+UNKNOWN_LENGTH = "the actuators' length is not known"
+"""Why effects that need a design cannot be shown."""
+
 
 @dataclass(frozen=True)
 class Parameter:
@@ -29,7 +33,10 @@ class Parameter:
 
 @dataclass(frozen=True)
 class At:
-    """Where an effect is asked: the scene, its own parameters, the form it takes, and the pressures so far, (T, R): inside, and that which bends."""
+    """Where an effect is asked: the scene, its own parameters, the form it takes.
+
+    inside_MPa, load_MPa: (T, R), the pressures so far: inside, and that which bends.
+    """
 
     scene: Scene
     values: Mapping[str, float]
@@ -45,8 +52,8 @@ class Effect:
     actuator → `load` → that which bends → curves of the base with `knobs` → `angle` (true) → `camera` (as seen);
     `force` for the blocked force, `flex` from the true angle to what the flex sensor feels.
 
-    forms: variants of the equation with the same parameters, the plainest first; parameters are observable amounts (a width, a share), so that
-    they mean the same in each form. acts_on: energy, material, design, load, time response or sensor.
+    forms: variants of the equation with the same parameters, "plain" the first; parameters are observable amounts (a width, a share),
+    so that they mean the same in each form. acts_on: energy, material, design, load, time response or sensor.
     """
 
     name: ClassVar[str]
@@ -58,6 +65,8 @@ class Effect:
     """The test that shows it."""
     parameters: ClassVar[tuple[Parameter, ...]]
     forms: ClassVar[tuple[str, ...]] = ("plain",)
+    seen_in: ClassVar[tuple[str, ...]] = ("angle_deg", "flex_V", "volume_mL", "force_N")
+    """Quantities that it changes; where none of them was measured, it cannot be shown."""
 
     def cannot_show(self, scene: Scene) -> str:
         """Why data like these cannot show the effect at all (no hold, no order of runs, designs unknown …); empty where they can."""
