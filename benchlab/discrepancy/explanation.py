@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from benchlab.discrepancy.experiment import Experiment
 from benchlab.units import FloatArray
 
 VERDICTS = {
@@ -128,13 +129,15 @@ class Curves:
 @dataclass(frozen=True)
 class NextExperiment:
     """protocol: path of the file, or its text before it is written. separates: rivals told apart, as words. expected_sd: smallest expected distance of two rivals
-    in standard deviations. setup: what to do beside the protocol (mounting, second length), empty where nothing. cannot: why there is none."""
+    in standard deviations, NaN where it was not chosen for a pair. setup: what to do beside the protocol (mounting, second length), empty where
+    nothing. cannot: why there is none. experiment: the same as data, None where there is none."""
 
     protocol: str
     separates: str
     expected_sd: float
     setup: str = ""
     cannot: str = ""
+    experiment: Experiment | None = None
 
 
 @dataclass(frozen=True)
