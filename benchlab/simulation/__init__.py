@@ -8,6 +8,7 @@
     newton      a regularised Newton method that only goes down in energy
     response    free bending, held curvature: the path of states as pressure grows
     actuator_response  whole-actuator quantities: angle, volume, blocked force, tip position
+    beam, beam_window  the one-dimensional model that most papers use, to compare with; its windows may balloon or not
     surface, deformed, film_strain  where the sheet has gone to, and how it is strained and stressed there
     identify    the film that makes cells of several designs bend as they do
     inverse     the designs that bend as wanted

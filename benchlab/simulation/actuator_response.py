@@ -54,13 +54,13 @@ class Fixture:
 
 
 @dataclass(frozen=True)
-class ActuatorResponse:
+class Curves:
     """Response curves of a simulated actuator; arrays are (P,), one value a pressure that was reached.
 
     angle_rad: between the two ends, k·(al − 2 cap). curvature_per_mm: 1/radius of the strip's line, so that the angle is
     curvature · stretch · length. axial_stretch: of the strip's line. moment_Nmm: on what holds the actuator straight,
     NaN where that state was not found. limit_pressure_MPa: None, or the last pressure with a stable state, where one
-    asked for had none. free, held: the states of the cell.
+    asked for had none.
     """
 
     design: ShellDesign
@@ -74,10 +74,6 @@ class ActuatorResponse:
     volume_mm3: FloatArray
     moment_Nmm: FloatArray
     limit_pressure_MPa: float | None
-    seconds: float
-    cell: Cell
-    free: Path
-    held: Path | None
 
     @property
     def angle_deg(self) -> FloatArray:
@@ -105,6 +101,16 @@ class ActuatorResponse:
         return {name: getattr(self, name) for name in names}
 
 
+@dataclass(frozen=True)
+class ActuatorResponse(Curves):
+    """Those of the shell cell. free, held: the states of the cell."""
+
+    seconds: float
+    cell: Cell
+    free: Path
+    held: Path | None
+
+
 def actuator_response(
     design: ShellDesign,
     layup: Layup,
@@ -125,10 +131,7 @@ def actuator_response(
     >>> actuator_response(ShellDesign(10, 3), layup, [0.1, 0.2], blocked=False).angle_deg.round(0)
     array([42., 78.])
     """
-    if not 0 <= 2 * cap_mm < design.length_mm:
-        raise UsageError(
-            f"caps of {cap_mm} mm leave nothing of {design.length_mm:g} mm to bend", hint="give the length of one cap"
-        )
+    check_cap(cap_mm, design)
     started = time.perf_counter()
     cell = Cell.of(design, layup, **cell_options)
     found = itertools.count(1)
@@ -160,6 +163,14 @@ def actuator_response(
         free=free,
         held=held,
     )
+
+
+def check_cap(cap_mm: float, design: ShellDesign) -> None:
+    """Raises UsageError for a rigid length at each end that leaves nothing to bend."""
+    if not 0 <= 2 * cap_mm < design.length_mm:
+        raise UsageError(
+            f"caps of {cap_mm} mm leave nothing of {design.length_mm:g} mm to bend", hint="give the length of one cap"
+        )
 
 
 def tip_force_N(moment_Nmm: FloatArray, angle_rad: FloatArray, length_mm: FloatArray | float) -> FloatArray:
