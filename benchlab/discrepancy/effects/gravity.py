@@ -1,6 +1,6 @@
 """gravity: the actuator's own weight bends it, by the attitude in which it is mounted.
 
-    θ → θ − q·(al/180 mm)²·C(p)·S(θ, φ)          S = −6/(W·al)·∂V/∂θ ≈ sin(φ + θ/2)          C = dθ/dp          (plain)
+    θ → θ − q·(al/180 mm)²·C(p)·S(θ, φ)          S = 6/(W·al)·∂V/∂θ ≈ sin(φ + θ/2)          C = dθ/dp          (plain)
 
 q `weight_MPa`: pressure whose bending moment is that of the weight of 180 mm where its middle is level, W·al/6 over
 the moment per pressure; al: length (180 mm where it is not known). φ: attitude of the base, 0 hanging, 90 level and
@@ -73,14 +73,14 @@ def _compliance(at: At) -> FloatArray:
 
 
 def torque(angle_deg: FloatArray, mount_deg: FloatArray | float) -> FloatArray:
-    """S(θ, φ): −6·∂V/∂θ/(W·al) with V = −W·al·[(cos φ − cos(φ + θ))/θ² − sin φ/θ], by its series below 0.2 rad.
+    """S(θ, φ): 6·∂V/∂θ/(W·al) with V = −W·al·[(cos φ − cos(φ + θ))/θ² − sin φ/θ], by its series below 0.2 rad.
 
     >>> torque(np.array([0.0, 20.0]), 90.0).round(3)
-    array([1.   , 0.985])
+    array([1.   , 0.982])
     """
     theta, mount = np.radians(angle_deg), np.radians(mount_deg)
     far = np.where(np.abs(theta) < 0.2, 0.2, theta)
     end = mount + far
-    exact = 6 * (np.sin(end) / far**2 - 2 * (np.cos(mount) - np.cos(end)) / far**3 + np.sin(mount) / far**2)
+    exact = 6 * (2 * (np.cos(mount) - np.cos(end)) / far**3 - (np.sin(mount) + np.sin(end)) / far**2)
     near = np.sin(mount) * (1 - 3 * theta**2 / 20) + np.cos(mount) * (theta / 2 - theta**3 / 30)
     return np.asarray(np.where(np.abs(theta) < 0.2, near, exact))
