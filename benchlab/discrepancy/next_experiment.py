@@ -25,6 +25,9 @@ LEAST_SD, ENOUGH_SD, CERTAIN_SD, NEAR = 1.0, 5.0, 20.0, 0.9
 """Below the first, rivals are not separated. From the second, nobody is asked to turn or make samples for more. Above the third it does
 not matter by how much. The last, as a share of the best, is as good. All are chosen."""
 
+FAR = 2.0
+"""Pairs so many times as far apart as the closest one, along the tangent, are not refitted."""
+
 TURN_S, MAKE_S = 120.0, 7200.0
 """What turning a sample, and making one, takes in time (chosen)."""
 
@@ -147,7 +150,7 @@ def _scored(
     for along, experiment, trial in trials:
         best = max((one.worth for one in scored), default=0.0)
         hopeful = along[0] >= NEAR * best
-        scored.append(Scored(experiment, *(min(along, _closest(trial.refitted())) if hopeful else along)))
+        scored.append(Scored(experiment, *(min(along, _closest(trial.refitted(FAR * along[0]))) if hopeful else along)))
     return _best_first(scored)
 
 

@@ -129,9 +129,17 @@ class Trial:
         """(K, K): distance of rival i from what rival j can be made to look like, along its tangent."""
         return self._pairs(self._linear)
 
-    def refitted(self) -> FloatArray:
-        """(K, K): the same with j refitted by a few steps of Gauss and Newton: never larger than without refitting."""
-        return self._pairs(self._refitted)
+    def refitted(self, within: float = np.inf) -> FloatArray:
+        """(K, K): the same with j refitted by a few steps of Gauss and Newton: never larger than without refitting.
+
+        Pairs that are farther apart than `within` along the tangent keep that distance.
+        """
+
+        def distance(i: int, j: int) -> float:
+            along = self._linear(i, j)
+            return along if along > within else self._refitted(i, j)
+
+        return self._pairs(distance)
 
     def _pairs(self, distance: Callable[[int, int], float]) -> FloatArray:
         """The smaller of both ways round; where one has all effects of the other, and more, how the other one looks like it."""
