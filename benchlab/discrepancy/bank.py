@@ -68,11 +68,12 @@ def scan(
     directions: FloatArray,
     residual: FloatArray,
     tangent: FloatArray,
-    generator: np.random.Generator,
+    noise: FloatArray,
     multiplier: float = 1.0,
-    draws: int = DRAWS,
 ) -> Scan:
-    """Is there more in the residual (C,) than scatter, along the directions (C, K) as far as the tangent (C, q) does not span them?"""
+    """Is there more in the residual (C,) than scatter, along the directions (C, K) as far as the tangent (C, q) does not span them?
+
+    noise: (draws, C), of Problem.noise."""
     free = off(directions, tangent)
     kept = (free**2).sum(axis=0) > 1e-4 * np.maximum((directions**2).sum(axis=0), 1e-12)
     if not kept.any():
@@ -80,8 +81,8 @@ def scan(
     t = np.zeros(directions.shape[1])
     t[kept] = problem.t_values(free[:, kept], residual)
     best = int(np.argmax(t))
-    noise = problem.largest_t_of_noise(free[:, kept], generator, draws)
-    p = (1 + int((noise >= t[best] / multiplier).sum())) / (draws + 1)
+    largest = problem.largest_t_of_noise(free[:, kept], noise)
+    p = (1 + int((largest >= t[best] / multiplier).sum())) / (len(noise) + 1)
     return Scan(t, p, float(t[best]), best)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from benchlab.discrepancy.base import Base
 from benchlab.discrepancy.candidates import p_enough
 from benchlab.discrepancy.effects.effect import Effect
 from benchlab.discrepancy.explanation import Curves, Explanation, Found, Gap, Tried
-from benchlab.discrepancy.fit import Fit, nothing
+from benchlab.discrepancy.fit import nothing
 from benchlab.discrepancy.heldout import held_out, noise_floor, together
 from benchlab.discrepancy.identify import Identified, identify, share_explained
 from benchlab.discrepancy.intervals import estimates
@@ -84,24 +84,25 @@ def _effects(problem: Problem, found: Identified) -> tuple[Found, ...]:
         return ()
     numbers = estimates(problem, list(found.forms) or [found.best])
     order = [active.name for active in (found.forms[0] if found.forms else found.best).actives]
-    out = []
+    out, shares = [], _shares(problem, found)
     for place, active in enumerate(found.best.actives):
         others = tuple(
             {a.form for one in found.forms[1:] for a in one.actives if a.name == active.name} - {active.form}
         )
-        share = found.share if len(found.best.actives) == 1 else _share_of(problem, found.best, place)
-        out.append(Found(active.name, active.form, numbers[order.index(active.name)], share, tuple(sorted(others))))
+        out.append(
+            Found(active.name, active.form, numbers[order.index(active.name)], shares[place], tuple(sorted(others)))
+        )
     return tuple(out)
 
 
-def _share_of(problem: Problem, best: Fit, place: int) -> float:
-    """Share of the gap that goes with one effect: explained with it, less what is explained when it is switched off."""
-    bare = nothing(problem)
-    rest = tuple(active for i, active in enumerate(best.actives) if i != place)
-    model = problem.model(rest)
-    residual = problem.whitened - model
-    without = replace(best, actives=rest, model=model, residual=residual, misfit=float(residual @ residual))
-    return max(share_explained(problem, bare, best) - share_explained(problem, bare, without), 0.0)
+def _shares(problem: Problem, found: Identified) -> list[float]:
+    """Of each effect: the share that all explain together, divided by how far each moves the predictions when it is switched off."""
+    actives = found.best.actives
+    whole = problem.cells(actives)
+    moved = np.array(
+        [np.mean((whole - problem.cells(actives[:i] + actives[i + 1 :])) ** 2) for i in range(len(actives))]
+    )
+    return [float(share) for share in found.share * moved / max(float(moved.sum()), 1e-300)]
 
 
 def _gap(problem: Problem, gap: FloatArray, after: FloatArray, parts: tuple, summary: bool) -> Gap:

@@ -21,8 +21,8 @@ BINS = 8
 HOLD_EDGES = (0.0, 0.05, 0.2, 0.5, 1.0)
 """Intervals of a hold, as shares of its duration."""
 
-POINTS = 3
-"""Points at which a model is evaluated, per interval."""
+POINTS, POINTS_AFTER_A_TURN = 3, 8
+"""Points at which a model is evaluated, per interval; more in the first two after a turn, where lags and loops show."""
 
 REST_POINTS = 6
 LAST_CYCLE = 4
@@ -142,16 +142,17 @@ def _points(run: Run, cut: Sequence[Segment], design: int, kind: int, occurrence
         _add(points, run, np.arange(len(run.time_s)), Feature(design, kind, occurrence, "", 1, "all", 0, np.nan))
         return points
     for segment in cut:
-        _add(points, run, np.arange(segment.first, min(segment.first + 1, segment.last)), None, segment.start_MPa)
-        for indices, number in _intervals(run, segment, top_MPa):
+        _add(points, run, np.arange(segment.first, min(segment.first + 1, segment.last)), None)
+        for place, (indices, number) in enumerate(_intervals(run, segment, top_MPa)):
             feature = None
             if segment.direction != "rest":
                 cycle = min(segment.cycle, LAST_CYCLE)
                 feature = Feature(design, kind, occurrence, "", cycle, segment.direction, number, segment.rate_MPa_s)
-            for part in np.array_split(indices, min(POINTS, len(indices))):
+            wanted = POINTS_AFTER_A_TURN if place < 2 else POINTS
+            for part in np.array_split(indices, min(wanted, len(indices))):
                 _add(points, run, part, feature)
     end = cut[-1]
-    _add(points, run, np.arange(end.last, end.last + 1), None, end.end_MPa)
+    _add(points, run, np.arange(end.last, end.last + 1), None)
     return points
 
 
@@ -177,12 +178,10 @@ def _intervals(run: Run, segment: Segment, top_MPa: float) -> list[tuple[NDArray
     return [(part, int(number[part[0] - inside[0]])) for part in np.split(inside, borders)]
 
 
-def _add(
-    points: _Points, run: Run, indices: NDArray[np.int64], feature: Feature | None, level_MPa: float | None = None
-) -> None:
+def _add(points: _Points, run: Run, indices: NDArray[np.int64], feature: Feature | None) -> None:
     if len(indices) == 0:
         return
-    pressure = float(np.mean(run.pressure_MPa[indices])) if level_MPa is None else level_MPa
+    pressure = float(np.mean(run.pressure_MPa[indices]))
     points.time_s.append(float(np.mean(run.time_s[indices])))
     points.pressure_MPa.append(pressure)
     points.command_MPa.append(_mean(run.command_MPa, indices))
@@ -283,7 +282,12 @@ def _features(
         times = [gathered[column].time_s[row] - gathered[column].time_s[0] for row, column, *_ in entries]
         pressures = [gathered[column].pressure_MPa[row] for row, column, *_ in entries]
         about.setdefault(index[cell[1]], []).append(
-            (float(np.mean(pressures)), float(np.mean(times)), float(np.ptp(times)), entries[0][3])
+            (
+                float(np.mean(pressures)),
+                float(np.mean(times)),
+                float(np.ptp(times)) * len(times) / max(len(times) - 1, 1),
+                entries[0][3],
+            )
         )
     features = []
     for i in range(len(keys)):
@@ -295,7 +299,7 @@ def _features(
                 rate_MPa_s=rate,
                 pressure_MPa=numbers[0],
                 time_s=numbers[1],
-                seconds=numbers[2] * POINTS / (POINTS - 1),
+                seconds=numbers[2],
             )
         )
     return Features(

@@ -7,13 +7,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from benchlab.discrepancy.bank import Bank, bank_of, flexible, scan
+from benchlab.discrepancy.bank import DRAWS, Bank, bank_of, flexible, scan
 from benchlab.discrepancy.candidates import best_starts, distinct, fits_with, in_set, p_enough, reach
 from benchlab.discrepancy.effects.effect import Effect
 from benchlab.discrepancy.fit import Fit, fit, nothing
 from benchlab.discrepancy.locate import gaps
 from benchlab.discrepancy.problem import Problem, off
 from benchlab.discrepancy.rules import Rules
+from benchlab.units import FloatArray
 
 
 @dataclass(frozen=True)
@@ -48,8 +49,9 @@ def identify(
     tell("directions of the effects")
     bank = bank_of(problem, effects)
     anything = flexible(problem)
-    known = scan(problem, bank.directions, bare.residual, bare.tangent, generator, rules.multiplier)
-    unknown = scan(problem, anything, bare.residual, bare.tangent, generator, rules.multiplier)
+    noise = problem.noise(generator, DRAWS)
+    known = scan(problem, bank.directions, bare.residual, bare.tangent, noise, rules.multiplier)
+    unknown = scan(problem, anything, bare.residual, bare.tangent, noise, rules.multiplier)
     if known.p > rules.first:
         verdict = "unexplained" if unknown.p < rules.adequate else "agree"
         return Identified(verdict, bare, (), (), (), min(known.p, unknown.p), unknown.p, 0.0)
@@ -59,7 +61,7 @@ def identify(
     while True:
         best = tried[0]
         stages.append({"model": " + ".join(best.names), "misfit": best.misfit})
-        left = _left(problem, best, bank, generator, rules)
+        left = _left(problem, best, bank, noise, rules)
         if left > rules.further or len(best.names) >= rules.most:
             break
         tell(f"fits of {len(best.names) + 1} effects")
@@ -68,7 +70,7 @@ def identify(
             break
         tried, forms = more, more_forms
     best = tried[0]
-    p_left = scan(problem, anything, best.residual, best.tangent, generator, rules.multiplier).p
+    p_left = scan(problem, anything, best.residual, best.tangent, noise, rules.multiplier).p
     share = share_explained(problem, bare, best)
     rivals = tuple(one for one in tried if in_set(problem, one, best, rules))
     verdict = "named" if len(rivals) == 1 else "ambiguous"
@@ -106,12 +108,12 @@ def _extended(
     return fits, {key: tuple(group) for key, group in forms.items()}
 
 
-def _left(problem: Problem, best: Fit, bank: Bank, generator: np.random.Generator, rules: Rules) -> float:
+def _left(problem: Problem, best: Fit, bank: Bank, noise: FloatArray, rules: Rules) -> float:
     """p of no further effect of the vocabulary."""
     others = bank.of([name for name in dict.fromkeys(a.name for a in bank.actives) if name not in best.names])
     if not others.actives:
         return 1.0
-    return scan(problem, others.directions, best.residual, best.tangent, generator, rules.multiplier).p
+    return scan(problem, others.directions, best.residual, best.tangent, noise, rules.multiplier).p
 
 
 def _worth(problem: Problem, more: Fit, best: Fit, rules: Rules) -> bool:

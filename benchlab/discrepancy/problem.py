@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,11 +22,25 @@ PRIOR_FREEDOM = 12.0
 """How many degrees of freedom the fitted scatter counts for, beside the samples' own in one direction."""
 
 
+THINNING = 0.0004
+"""Systematic error of each feature, as a share of the largest value: runs are evaluated at a few points in each interval."""
+
+
+class _Alike(NamedTuple):
+    """cells: (n, F) of n samples; lower: L (F, F); scatter: L⁻¹ of the root of the scatter between samples; features: (F,)."""
+
+    cells: NDArray[np.int64]
+    lower: FloatArray
+    scatter: FloatArray
+    features: NDArray[np.int64]
+
+
 @dataclass(frozen=True)
 class Problem:
     """Features of samples, the scene that predicts them, and the scatter of samples.
 
-    Whitened vectors are (C,): L⁻¹ of each sample's cells, V = L Lᵀ.
+    Whitened vectors are (C,): L⁻¹ of each sample's cells, L Lᵀ = V + n u²: scatter between samples, and n times the systematic error, so that
+    the mean over n samples has V/n + u².
     """
 
     scene: Scene
@@ -38,29 +53,48 @@ class Problem:
         return len(self.features.sample_design)
 
     @cached_property
-    def _factors(self) -> list[tuple[NDArray[np.int64], FloatArray]]:
-        """For samples with the same features of one design: their cells (n, F) and L."""
+    def systematic(self) -> FloatArray:
+        """(F,): error of the model's own numbers, the same for all samples: of thinning the runs, and of the simulation's mesh."""
+        features = self.features.features
+        base = self.features.collect(predict(self.scene, (), self.features.quantities))
+        number = np.bincount(self.features.feature, minlength=len(features))
+        mean = np.bincount(self.features.feature, base, minlength=len(features)) / np.maximum(number, 1)
+        quantity = np.array([feature.quantity for feature in features])
+        scale = {name: float(np.abs(mean[quantity == name]).max()) for name in self.features.quantities}
+        return THINNING * np.array([scale[name] for name in quantity])
+
+    @cached_property
+    def _factors(self) -> list[_Alike]:
+        """Samples with the same features of one design."""
         groups: dict[tuple[int, bytes], list[NDArray[np.int64]]] = {}
         for sample, design in enumerate(self.features.sample_design):
-            cells = np.flatnonzero(self.features.sample == sample)
-            key = (int(design), self.features.feature[cells].tobytes())
-            groups.setdefault(key, []).append(cells)
+            mine = np.flatnonzero(self.features.sample == sample)
+            groups.setdefault((int(design), self.features.feature[mine].tobytes()), []).append(mine)
+        number = np.bincount(self.features.feature, minlength=len(self.features.features))
         out = []
         for (design, _), cells in groups.items():
-            own = self.scatter.features_of[design]
-            place = np.searchsorted(own, self.features.feature[cells[0]])
-            covariance = self.scatter.covariance[design][np.ix_(place, place)]
-            out.append((np.array(cells), cholesky(covariance, lower=True)))
+            own = self.features.feature[cells[0]]
+            place = np.searchsorted(self.scatter.features_of[design], own)
+            between = self.scatter.covariance[design][np.ix_(place, place)]
+            error = self.systematic[own]
+            lower = cholesky(between + np.diag(number[own] * error**2), lower=True)
+            scatter = solve_triangular(lower, cholesky(between, lower=True), lower=True)
+            out.append(_Alike(np.array(cells), lower, scatter, own))
         return out
 
     def whiten(self, cells: FloatArray) -> FloatArray:
         """(C,) or (C, K) → the same, whitened."""
+        return self._mapped(
+            cells, lambda alike, flat: solve_triangular(alike.lower, flat, lower=True, check_finite=False)
+        )
+
+    def _mapped(self, cells: FloatArray, change: Callable[[_Alike, FloatArray], FloatArray]) -> FloatArray:
+        """(C, …) → the same, each sample's part (F, …) changed."""
         out = np.empty_like(cells)
-        for where, lower in self._factors:
-            flat = cells[where]  # (n, F) or (n, F, K)
-            columns = np.moveaxis(flat, 0, 1).reshape(flat.shape[1], -1)
-            solved = solve_triangular(lower, columns, lower=True, check_finite=False)
-            out[where] = np.moveaxis(solved.reshape(flat.shape[1], flat.shape[0], *flat.shape[2:]), 1, 0)
+        for alike in self._factors:
+            flat = np.moveaxis(cells[alike.cells], 0, 1)  # (F, n, …)
+            changed = change(alike, flat.reshape(len(flat), -1)).reshape(flat.shape)
+            out[alike.cells] = np.moveaxis(changed, 1, 0)
         return out
 
     @cached_property
@@ -115,39 +149,59 @@ class Problem:
         """(K,): along each of the whitened directions (C, K), how many standard errors the residual (C,) is from none.
 
         Samples are the independent units: the error is that of the scores' own scatter between samples of a design, moderated by the
-        fitted one (Smyth 2004): robust where the fitted scatter is wrong in this direction.
+        fitted one (Smyth 2004): robust where the fitted scatter is wrong in this direction. The systematic error is added.
         """
-        scores = self.per_sample(directions * residual[:, None])
-        information = self.per_sample(directions**2)
-        return self._t(scores, information)
+        return self._t(self.per_sample(directions * residual[:, None]), self._errors(directions))
 
-    def _t(self, scores: FloatArray, information: FloatArray) -> FloatArray:
-        """scores: (…, S, K), information: (S, K) → (…, K)."""
+    def largest_t_of_noise(self, directions: FloatArray, noise: FloatArray) -> FloatArray:
+        """(draws,): largest t over the directions (C, K) in each draw of `noise`."""
+        scores = np.empty((len(noise), self.samples, directions.shape[1]))
+        ends = [*self._starts[1:], len(directions)]
+        for sample, (first, last) in enumerate(zip(self._starts, ends)):
+            scores[:, sample] = noise[:, first:last] @ directions[first:last]
+        return np.asarray(self._t(scores, self._errors(directions)).max(axis=-1))
+
+    def noise(self, generator: np.random.Generator, draws: int) -> FloatArray:
+        """(draws, C): whitened draws of scatter between samples and of the systematic error, where nothing else is there."""
+        out = np.empty((draws, len(self.features.value)))
+        common = generator.standard_normal((draws, len(self.features.features))) * self.systematic
+        for alike in self._factors:
+            for cells in alike.cells:
+                own = generator.standard_normal((draws, len(cells))) @ alike.scatter.T
+                out[:, cells] = own + solve_triangular(alike.lower, common[:, alike.features].T, lower=True).T
+        return out
+
+    def _errors(self, directions: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """(S, K) variance of the scores by scatter between samples, (K,) by the systematic error."""
+        between = self.per_sample(self._mapped(directions, lambda alike, flat: alike.scatter.T @ flat) ** 2)
+        weights = self._mapped(
+            directions,
+            lambda alike, flat: solve_triangular(alike.lower, flat, lower=True, trans="T", check_finite=False),
+        )
+        together = np.zeros((len(self.features.features), directions.shape[1]))
+        np.add.at(together, self.features.feature, weights)
+        return between, np.asarray((self.systematic[:, None] ** 2 * together**2).sum(axis=0))
+
+    def _t(self, scores: FloatArray, errors: tuple[FloatArray, FloatArray]) -> FloatArray:
+        """scores: (…, S, K) → (…, K)."""
+        information, common = errors
         design = self.features.sample_design
         n = np.bincount(design)[design]
         deviation = self._within @ scores
         expected = (information * ((n - 1) / n)[:, None]).sum(axis=0)
         freedom = self.scatter.freedom
-        total = information.sum(axis=0)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = (deviation**2).sum(axis=-2) / expected if freedom else 1.0
-            inflation = (PRIOR_FREEDOM + freedom * np.where(expected > 0, ratio, 1.0)) / (PRIOR_FREEDOM + freedom)
-            return np.asarray(np.where(total > 1e-12, scores.sum(axis=-2) / np.sqrt(inflation * total), 0.0))
+        ratio = np.divide(
+            (deviation**2).sum(axis=-2), expected, out=np.ones(scores.shape[:-2] + expected.shape), where=expected > 0
+        )
+        inflation = (PRIOR_FREEDOM + freedom * ratio) / (PRIOR_FREEDOM + freedom)
+        variance = inflation * information.sum(axis=0) + common
+        return np.asarray(
+            np.divide(scores.sum(axis=-2), np.sqrt(variance), out=np.zeros_like(variance), where=variance > 1e-12)
+        )
 
     @property
     def freedom(self) -> float:
         return PRIOR_FREEDOM + self.scatter.freedom
-
-    def largest_t_of_noise(
-        self, directions: FloatArray, generator: np.random.Generator, draws: int = 400
-    ) -> FloatArray:
-        """(draws,): largest |t| over the directions where nothing but the scatter is there (parametric bootstrap)."""
-        information = self.per_sample(directions**2)
-        scores = np.empty((draws, self.samples, directions.shape[1]))
-        ends = [*self._starts[1:], len(directions)]
-        for sample, (first, last) in enumerate(zip(self._starts, ends)):
-            scores[:, sample] = generator.standard_normal((draws, last - first)) @ directions[first:last]
-        return np.asarray(self._t(scores, information).max(axis=-1))
 
 
 def off(directions: FloatArray, tangent: FloatArray) -> FloatArray:
