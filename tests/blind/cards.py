@@ -220,9 +220,7 @@ def _pairs(count: int, rng: np.random.Generator) -> Iterator[Case]:
                 strength = float(rng.choice([3.0, 4.0]))
                 layout = replace(pair.layout, command=bool(rng.integers(2)))
                 name = f"pair-{truth}-{rival}-{number}"
-                yield Case(
-                    name, 0, "pair", (truth,), (strength,), layout, forms, rival, pair.separated_by, pair.how
-                )
+                yield Case(name, 0, "pair", (truth,), (strength,), layout, forms, rival, pair.separated_by, pair.how)
 
 
 def _layout(rng: np.random.Generator) -> Layout:

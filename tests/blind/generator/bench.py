@@ -1,7 +1,8 @@
 """From a command to what is written down: pressure as recorded, angle or force as read.
 
-command -> (the sensor by which the regulator works) -> pressure at its outlet -> (leak, tube, lag) -> pressure inside -> (friction, slack,
-creep, softening) -> the cell's curve -> (gravity, caps, creep) -> the sample's gain -> (camera) -> offset and noise, stamped by the camera's clock.
+command -> (the sensor by which the regulator works) -> pressure at its outlet -> (leak, tube, lag) -> pressure inside
+-> (friction, slack, creep, softening) -> the cell's curve -> (gravity, caps, creep) -> the sample's gain -> (camera)
+-> offset and noise, stamped by the camera's clock.
 """
 
 from __future__ import annotations

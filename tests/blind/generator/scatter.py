@@ -38,7 +38,7 @@ class Scatter:
     def draw(cls, rng: np.random.Generator) -> Scatter:
         return cls(
             gain=rng.uniform(0.02, 0.03),
-            shift_MPa=rng.uniform(0.002, 0.005),
+            shift_MPa=rng.uniform(0.003, 0.006),
             warp_MPa=rng.uniform(0.001, 0.003),
             offset_deg=rng.uniform(0.2, 0.5),
             colour_deg=rng.uniform(0.1, 0.35),
@@ -83,6 +83,8 @@ class People:
 
     def deviation_MPa(self, pressure_MPa: FloatArray) -> FloatArray:
         """(T, S): by how much a sample acts as if the pressure were another."""
+        if not (np.any(self.shift_MPa) or np.any(self.warp_MPa)):
+            return np.zeros_like(pressure_MPa)
         return self.shift_MPa * fade(pressure_MPa) + np.einsum("ks,kts->ts", self.warp_MPa, waves(pressure_MPa))
 
 

@@ -89,6 +89,15 @@ class Setting:
             temperature_C=self.room.temperature_C(time[:, None] + starts_s),
         )
 
+    def thinned(self) -> Setting:
+        """One sample of each design."""
+        designs = [(one.tw_mm, one.slw_mm, one.length_mm) for one in self.samples]
+        kept = np.array([designs.index(one) for one in dict.fromkeys(designs)])
+        samples = tuple(self.samples[i] for i in kept)
+        return replace(
+            self, samples=samples, orientation_deg=self.orientation_deg[kept], starts_s=self.starts_s[:, kept]
+        )
+
     def made_again(self, length_mm: float | None, count: int) -> tuple[Sample, ...]:
         """As many new samples of each design, of another length where one is given; S6 follows S5."""
         designs = list(dict.fromkeys((one.tw_mm, one.slw_mm, one.length_mm) for one in self.samples))

@@ -35,6 +35,7 @@ def noise_floor(setting: Setting, scatter: Scatter, quantity: str = "angle_deg")
 
     Runs count alike, whatever the number of their readings.
     """
+    setting, samples = setting.thinned(), setting.layout.samples
     parts = []
     for (run, read), (_, at) in zip(clean(setting, ()), setting.stations(1)):
         p = run.command_MPa(at.time_s)
@@ -44,17 +45,31 @@ def noise_floor(setting: Setting, scatter: Scatter, quantity: str = "angle_deg")
             for design, columns in at.designs().items():
                 slope = plain_curve(*design).derivative()(p)
                 parts.append(scatter.variance_deg2(p, read[:, columns[0]], slope).mean())
-    return float(np.sqrt(np.mean(parts) / setting.layout.samples))
+    return float(np.sqrt(np.mean(parts) / samples))
 
 
-def shift(setting: Setting, hidden: Sequence[Hidden], quantity: str = "angle_deg") -> float:
-    """RMS over runs, points and designs of what the effects change in the mean of a design's samples."""
-    squares = []
-    designs = setting.stations(1)[0][1].designs().values()
-    for (run, with_it), (_, without) in zip(clean(setting, hidden), clean(setting, ())):
-        if run.blocked == (quantity == "force_N"):
-            squares += [np.mean((with_it - without)[:, columns].mean(axis=1) ** 2) for columns in designs]
-    return float(np.sqrt(np.mean(squares)))
+def shift(setting: Setting, one: Hidden) -> float:
+    """RMS over runs, points and designs of what an effect changes in the mean of a design's samples."""
+    return _Shifts(setting, one).of(one)
+
+
+class _Shifts:
+    """Shifts of an effect of different sizes; what is read without it is worked out once."""
+
+    def __init__(self, setting: Setting, one: Hidden) -> None:
+        self.setting = setting if one.by_sample else setting.thinned()
+        self.blocked = one.quantity == "force_N"
+        self.without = clean(self.setting, ())
+        self.designs = list(self.setting.stations(1)[0][1].designs().values())
+
+    def of(self, one: Hidden) -> float:
+        squares = [
+            np.mean((with_it - without)[:, columns].mean(axis=1) ** 2)
+            for (run, with_it), (_, without) in zip(clean(self.setting, [one]), self.without)
+            for columns in self.designs
+            if run.blocked == self.blocked
+        ]
+        return max(float(np.sqrt(np.mean(squares))), 1e-9)
 
 
 def sized(one: Hidden, setting: Setting, target: float) -> Hidden:
@@ -63,10 +78,11 @@ def sized(one: Hidden, setting: Setting, target: float) -> Hidden:
     Regula falsi on the logarithms, kept within a bracket.
     """
     low, high = one.bounds
-    tries = {low: max(shift(setting, [one.sized(low)], one.quantity), 1e-9)}
+    shifts = _Shifts(setting, one)
+    tries = {low: shifts.of(one.sized(low))}
     size = one.typical
     for _ in range(14):
-        tries[size] = max(shift(setting, [one.sized(size)], one.quantity), 1e-9)
+        tries[size] = shifts.of(one.sized(size))
         if abs(tries[size] / target - 1) < CLOSE or (size == high and tries[size] < target):
             break
         below = max((s for s, found in tries.items() if found < target), default=low)

@@ -109,7 +109,7 @@ def study(
                 "known": one.known,
                 "same_form": one.same_form,
                 "parameters": one.parameters(),
-                "strength": shift(setting, [one], one.quantity) / floors[one.quantity],
+                "strength": shift(setting, one) / floors[one.quantity],
             }
             for one in hidden
         ],

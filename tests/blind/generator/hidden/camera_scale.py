@@ -8,9 +8,8 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from tests.blind.generator.hidden.hidden import Hidden
-from tests.blind.generator.station import FloatArray, Station
-
 from tests.blind.generator.hidden.picture import pinhole, seen_deg
+from tests.blind.generator.station import FloatArray, Station
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,6 @@ from tests.blind.generator.hidden.hidden import Hidden
 from tests.blind.generator.station import FloatArray, Station
 
 
-
 @dataclass(frozen=True)
 class DeadPressure(Hidden):
     """size: p0, MPa. form: kink max(p − p0, 0); softplus of width p0/5; root sqrt(p² + p0²) − p0, which comes to p − p0."""

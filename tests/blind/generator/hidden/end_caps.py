@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
-
-import numpy as np
+from typing import Any, ClassVar
 
 from tests.blind.generator.hidden.hidden import Hidden
 from tests.blind.generator.station import FloatArray, Station
-
 
 
 @dataclass(frozen=True)

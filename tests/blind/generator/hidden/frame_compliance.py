@@ -6,13 +6,11 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 import numpy as np
-
-from tests.blind.generator.hidden.hidden import Hidden
-from tests.blind.generator.station import FloatArray, Station
-
 from scipy.interpolate import PchipInterpolator
 
+from tests.blind.generator.hidden.hidden import Hidden
 from tests.blind.generator.solved import base
+from tests.blind.generator.station import FloatArray, Station
 
 
 @dataclass(frozen=True)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import ClassVar, Self
 
 import numpy as np
 
 from tests.blind.generator.hidden.hidden import Hidden
 from tests.blind.generator.station import FloatArray, Station
-
 
 
 @dataclass(frozen=True)
@@ -28,19 +29,25 @@ class Friction(Hidden):
         return cls(cls.typical, str(rng.choice(["dahl", "bouc-wen"])), rng.uniform(0.3, 1.0), rng.uniform(1.3, 2.0))
 
     def effective(self, inside: FloatArray, at: Station) -> FloatArray:
-        held = np.zeros(inside.shape[1])
-        found = np.empty_like(inside)
-        found[0] = inside[0]
-        for i in range(1, len(inside)):
-            step = inside[i] - inside[i - 1]
-            most = np.maximum(self.size * inside[i], 1e-6)
-            if self.form == "dahl":
+        return by_history(inside, self._one)
+
+    def _one(self, pressures: list[float]) -> list[float]:
+        held, before, found = 0.0, pressures[0], []
+        for p in pressures:
+            step, most = p - before, max(self.size * p, 1e-6)
+            if step and self.form == "dahl":
                 # dz = s·(1 − sign(dp)·z/most)·dp, exactly over the step.
-                goal = np.sign(step) * most
-                held = np.where(step == 0, held, goal + (held - goal) * np.exp(-self.stiffness * np.abs(step) / most))
-            else:
-                part = np.abs(held / most) ** self.power * np.sign(held * step)
-                slope = self.stiffness * np.clip(1 - part, -4, 2)
-                held = np.clip(held + slope * step, -most, most)
-            found[i] = inside[i] - held
+                goal = math.copysign(most, step)
+                held = goal + (held - goal) * math.exp(-self.stiffness * abs(step) / most)
+            elif step:
+                part = math.copysign(min(abs(held / most), 2.0) ** self.power, held * step)
+                held = min(max(held + self.stiffness * (1 - part) * step, -most), most)
+            before = p
+            found.append(p - held)
         return found
+
+
+def by_history(inside: FloatArray, one: Callable[[list[float]], list[float]]) -> FloatArray:
+    """(T, S): each different history of pressure gone through once, number by number."""
+    histories, which = np.unique(inside, axis=1, return_inverse=True)
+    return np.array([one(column.tolist()) for column in histories.T]).T[:, np.ravel(which)]

@@ -16,6 +16,7 @@ class Hidden:
     """An effect of some size. Arrays are (T, S): times of a run, samples; pressures in MPa, angles in degrees, forces in N.
 
     size: how strong, in the effect's own unit, within `bounds`; `typical` is where the search for it begins.
+    by_sample: samples of one design differ in it, by their time in the session or the way they are mounted.
     """
 
     size: float
@@ -24,6 +25,7 @@ class Hidden:
     typical: ClassVar[float]
     known: ClassVar[bool] = True
     quantity: ClassVar[str] = "angle_deg"
+    by_sample: ClassVar[bool] = False
 
     @classmethod
     def draw(cls, rng: np.random.Generator) -> Self:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import ClassVar, Self
 
 import numpy as np
 
 from tests.blind.generator.hidden.hidden import Hidden
-from tests.blind.generator.station import FloatArray, Station
-
 from tests.blind.generator.hidden.picture import seen_deg
+from tests.blind.generator.station import FloatArray, Station
 
 
 @dataclass(frozen=True)

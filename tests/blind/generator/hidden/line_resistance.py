@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+import functools
+import math
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import ClassVar, Self
 
 import numpy as np
-
-from tests.blind.generator.hidden.hidden import Hidden
-from tests.blind.generator.station import FloatArray, Station
-
 from scipy.interpolate import PchipInterpolator
 
+from tests.blind.generator.hidden.friction import by_history
+from tests.blind.generator.hidden.hidden import Hidden
 from tests.blind.generator.solved import base
+from tests.blind.generator.station import FloatArray, Station
 
 
 @dataclass(frozen=True)
@@ -29,24 +30,27 @@ class LineResistance(Hidden):
         return cls(cls.typical, rng.uniform(0.7, 1.0))
 
     def inside(self, supplied: FloatArray, at: Station) -> FloatArray:
-        grid = np.linspace(0, 0.45, 451)
-        capacity = np.empty((len(grid), len(at.samples)))
+        found = np.empty((len(supplied), len(at.samples)))
+        source = np.broadcast_to(supplied, found.shape)
         for (tw, slw, length), columns in at.designs().items():
             cell = base(tw, slw)
             filled = PchipInterpolator(cell.pressure_MPa, cell.volume_mm2[0] * length / 1000)
-            p = np.clip(grid, cell.pressure_MPa[0], cell.pressure_MPa[-1])
-            capacity[:, columns] = filled.derivative()(p)[:, None]
-        everyone = np.arange(capacity.shape[1])
-        source = np.broadcast_to(supplied, (len(supplied), capacity.shape[1]))
-        found = np.empty(source.shape)
-        found[0] = now = source[0].copy()
-        steps = 3
-        for i in range(1, len(found)):
-            for part in range(1, steps + 1):
-                target = source[i - 1] + (source[i] - source[i - 1]) * part / steps
-                here = np.clip((now * 1000).astype(int), 0, 450)
-                drop = np.abs(target - now) + 1e-5
-                time = self.size * capacity[here, everyone] * (drop / 0.02) ** (1 - self.power)
-                now = target + (now - target) * np.exp(-at.step_s[i] / steps / time)
-            found[i] = now
+            at_grid = np.clip(np.arange(0, 0.451, 0.001), cell.pressure_MPa[0], cell.pressure_MPa[-1])
+            capacity = filled.derivative()(at_grid).tolist()
+            fill = functools.partial(self._one, capacity, at.step_s.tolist())
+            found[:, columns] = by_history(source[:, columns], fill)
+        return found
+
+    def _one(self, capacity: list[float], steps_s: list[float], source: list[float]) -> list[float]:
+        """The pressure inside, from step to step by the time constant that capacity and drop have at its beginning."""
+        now, before, found = source[0], source[0], []
+        for target, step in zip(source, steps_s):
+            parts = max(1, math.ceil(step / 0.025))
+            for part in range(1, parts + 1):
+                goal = before + (target - before) * part / parts
+                drop = abs(goal - now) + 1e-5
+                time = self.size * capacity[min(max(int(now * 1000), 0), 450)] * (drop / 0.02) ** (1 - self.power)
+                now = goal + (now - goal) * math.exp(-step / parts / time)
+            before = target
+            found.append(now)
         return found

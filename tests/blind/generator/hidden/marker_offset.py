@@ -8,9 +8,8 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from tests.blind.generator.hidden.hidden import Hidden
-from tests.blind.generator.station import FloatArray, Station
-
 from tests.blind.generator.hidden.picture import MARKERS, on_the_line, seen_deg, straight_on
+from tests.blind.generator.station import FloatArray, Station
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,6 @@ from tests.blind.generator.hidden.hidden import Hidden
 from tests.blind.generator.station import FloatArray, Station
 
 
-
 @dataclass(frozen=True)
 class PressureGain(Hidden):
     """size: |a − 1|, reading = a·p."""

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 import numpy as np
+from scipy.signal import bilinear, lfilter
 
 from tests.blind.generator.hidden.hidden import Hidden
 from tests.blind.generator.station import FloatArray, Station
-
-from scipy.signal import bilinear, lfilter
 
 
 @dataclass(frozen=True)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import ClassVar, Self
 
 import numpy as np
+from scipy.signal import bilinear, lfilter
 
 from tests.blind.generator.hidden.hidden import Hidden
 from tests.blind.generator.station import FloatArray, Station
-
-from scipy.signal import bilinear, lfilter
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,6 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from tests.blind.generator.hidden.hidden import Hidden
-from tests.blind.generator.station import FloatArray, Station
-
 from tests.blind.generator.solved import UNEVEN, Family, family
 
 

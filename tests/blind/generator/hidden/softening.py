@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import ClassVar, Self
 
 import numpy as np
+from scipy.special import erf
 
 from tests.blind.generator.hidden.hidden import Hidden
 from tests.blind.generator.station import FloatArray, Station
-
-from scipy.special import erf
 
 REFERENCE_MPa = 0.35
 
@@ -19,8 +18,9 @@ REFERENCE_MPa = 0.35
 class Softening(Hidden):
     """size: by what part the same pressure acts stronger when all has softened.
 
-    form: path (softens exponentially with the loading gone through, half of it in about `cycles` cycles to 0.35 MPa) or ogden-roxburgh (energy
-    below the largest seen, over `width` of that at 0.35 MPa). worn: the simulated curve is that of the softened actuator; otherwise of the new one.
+    form: path (softens exponentially with the loading gone through, half of it in about `cycles` cycles to 0.35 MPa) or ogden-roxburgh
+    (energy below the largest seen, over `width` of that at 0.35 MPa). worn: the simulated curve is that of the softened actuator;
+    otherwise of the new one.
     """
 
     form: str

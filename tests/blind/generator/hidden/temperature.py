@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
-
-from tests.blind.generator.hidden.hidden import Hidden
-from tests.blind.generator.station import FloatArray, Station
-
 from scipy.interpolate import RectBivariateSpline
 
+from tests.blind.generator.hidden.hidden import Hidden
 from tests.blind.generator.solved import curve_deg, family
+from tests.blind.generator.station import FloatArray, Station
 
 NOMINAL_C = 23.0
 
@@ -22,8 +20,9 @@ class Temperature(Hidden):
     """size: part of the film's modulus lost per K above 23 °C, exponentially."""
 
     name: ClassVar[str] = "temperature"
-    bounds: ClassVar[tuple[float, float]] = (1e-5, 0.03)
+    bounds: ClassVar[tuple[float, float]] = (1e-5, 0.045)
     typical: ClassVar[float] = 0.008
+    by_sample: ClassVar[bool] = True
 
     def parameters(self) -> dict[str, Any]:
         return {"loss_per_K": self.size}

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import ClassVar, Self
 
 import numpy as np
 
 from tests.blind.generator.hidden.hidden import Hidden
 from tests.blind.generator.station import FloatArray, Station
-
 
 
 @dataclass(frozen=True)
@@ -21,6 +20,7 @@ class WarmUpDrift(Hidden):
     name: ClassVar[str] = "warm_up_drift"
     bounds: ClassVar[tuple[float, float]] = (1e-3, 60.0)
     typical: ClassVar[float] = 3.0
+    by_sample: ClassVar[bool] = True
     known: ClassVar[bool] = False
 
     @classmethod
