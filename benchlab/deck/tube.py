@@ -102,6 +102,11 @@ def tube_of(
     for name, size in sizes.items():
         if not (math.isfinite(size) and size > 0):
             raise UsageError(f"element size {name} is {size}", hint="give a positive length in mm")
+    for name in ("seam_margin_mm", "bladder_N_per_mm"):
+        if getattr(layup, name):
+            raise UsageError(
+                f"decks are written without {name}, which {layup.name} has", hint="set it to 0 in the material file"
+            )
     pieces = pieces_of(design, layup)
     radius = design.perimeter_mm / (2 * math.pi)
     s = lines([b for piece in pieces for b in piece.s_mm], around_mm)

@@ -25,8 +25,7 @@ def peak_film_strain(cell: Cell, state: State) -> float:
     q = cell.points(state)
     found, area = [], []
     for laminate, elements in cell.laminates:
-        if len(laminate.layers) == 1 and laminate.layers[0].law.incompressible:
-            film = laminate.layers[0]
+        if laminate.layers and (film := laminate.layers[-1]).name == "film":
             e = strains(q[elements].reshape(-1, 3, FIELDS), state.k, state.lam)
             C = metric_at(e, (film.bottom_mm + film.top_mm) / 2, laminate.curvature_per_mm)
             found.append(_largest_stretch(C) - 1)

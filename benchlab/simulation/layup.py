@@ -12,7 +12,10 @@ from typing import Literal
 
 from benchlab.actuator import ShellDesign
 from benchlab.errors import UsageError
-from benchlab.simulation.laws import Law, StVenantKirchhoff
+from benchlab.simulation.laws import Law, Polynomial, StVenantKirchhoff
+
+BLADDER_mm = 0.01
+"""Thickness that a bladder is given; chosen so thin that its own bending and place do not count."""
 
 
 @dataclass(frozen=True)
@@ -24,6 +27,9 @@ class Layup:
     free of bending stress as a round tube; otherwise as a flat sheet. stacking: every layer has its middle on the
     reference surface, as shell programs idealise it; or fabric and strip lie outside of the film, as they are glued.
     film_largest_stretch: of the tests that the film's law was fitted to; beyond it the law is a guess.
+    seam_margin_mm: how far the weld reaches into a window from each of its edges; there the film is held as by fabric, so that
+    the window is 2 m narrower and shorter while the cell's length stays. bladder_N_per_mm: Young's modulus times thickness of a bladder
+    inside that is stretched with the film, 0 where it is slack.
     """
 
     name: str
@@ -38,6 +44,8 @@ class Layup:
     moulded: bool = True
     stacking: Literal["middle", "outside"] = "middle"
     film_largest_stretch: float | None = None
+    seam_margin_mm: float = 0.0
+    bladder_N_per_mm: float = 0.0
 
     def __post_init__(self) -> None:
         for name in ("film_thickness_mm", "fabric_thickness_mm", "strip_thickness_mm"):
@@ -45,8 +53,9 @@ class Layup:
                 raise UsageError(f"{name} is {value}", hint="give a positive thickness in mm")
         if self.film_largest_stretch is not None and not self.film_largest_stretch > 1:
             raise UsageError(f"film_largest_stretch is {self.film_largest_stretch}", hint="give a stretch above 1")
-        if not (math.isfinite(self.weld_width_mm) and self.weld_width_mm >= 0):
-            raise UsageError(f"weld_width_mm is {self.weld_width_mm}", hint="give 0 or a width in mm")
+        for name, what in (("weld_width_mm", "width"), ("seam_margin_mm", "width"), ("bladder_N_per_mm", "stiffness")):
+            if not (math.isfinite(value := getattr(self, name)) and value >= 0):
+                raise UsageError(f"{name} is {value}", hint=f"give 0 or a {what} in {name.split('_', 1)[1]}")
 
 
 @dataclass(frozen=True)
@@ -79,28 +88,48 @@ class Layer:
 
 
 def pieces_of(design: ShellDesign, layup: Layup) -> tuple[Piece, ...]:
-    """The pieces of the quarter cell: film, ribs of fabric, strip."""
+    """The pieces of the quarter cell: bladder, film, ribs of fabric, strip. Raises UsageError where the seams' margins close the window."""
     edge, end = design.strip_width_mm / 2, (design.window_width_mm + design.rib_width_mm) / 2
-    around = design.perimeter_mm / 2
+    around, margin = design.perimeter_mm / 2, layup.seam_margin_mm
+    if widest_margin_mm(design) <= margin:
+        raise UsageError(
+            f"seam_margin_mm is {margin:g} and closes the windows of {design.name}",
+            hint=f"give less than {widest_margin_mm(design):g}, half of the window's shorter side",
+        )
     welded = max(0.0, edge - layup.weld_width_mm)
-    film_from = 0.0 if layup.film_under_strip else welded
+    film_from, rib, window = 0.0 if layup.film_under_strip else welded, design.rib_width_mm / 2 + margin, edge + margin
     pieces = [
         Piece("film", layup.film, layup.film_thickness_mm, (film_from, around), (0.0, end)),
-        Piece("rib", layup.fabric, layup.fabric_thickness_mm, (welded, around), (0.0, design.rib_width_mm / 2)),
+        Piece("rib", layup.fabric, layup.fabric_thickness_mm, (welded, around), (0.0, rib)),
     ]
-    if welded < edge:
-        # The windows end at the strip's edge: under the strip the fabric is whole.
-        pieces.append(
-            Piece("weld", layup.fabric, layup.fabric_thickness_mm, (welded, edge), (design.rib_width_mm / 2, end))
-        )
+    if layup.bladder_N_per_mm:
+        pieces.insert(0, Piece("bladder", bladder_law(layup.bladder_N_per_mm), BLADDER_mm, (0.0, around), (0.0, end)))
+    if welded < window:
+        # The windows end at the strip's edge or a margin beyond it: up to there the fabric is whole.
+        pieces.append(Piece("weld", layup.fabric, layup.fabric_thickness_mm, (welded, window), (rib, end)))
     pieces.append(Piece("strip", layup.fabric, layup.strip_thickness_mm, (0.0, edge), (0.0, end)))
     return tuple(pieces)
 
 
+def widest_margin_mm(design: ShellDesign) -> float:
+    """The seam margin at which a window closes.
+
+    >>> widest_margin_mm(ShellDesign(strip_width_mm=10, window_width_mm=3))
+    1.5
+    """
+    return min(design.window_width_mm, design.window_length_mm) / 2
+
+
+def bladder_law(stiffness_N_per_mm: float) -> Polynomial:
+    """Neo-Hooke's rubber (Treloar 1943: E = 6·C10) that, BLADDER_mm thick, has this stiffness E·h; so thin that it does not bend."""
+    return Polynomial(C10=stiffness_N_per_mm / (6 * BLADDER_mm))
+
+
 def laminate_at(pieces: Sequence[Piece], s: float, Z: float, stacking: str = "middle") -> tuple[Layer, ...]:
-    """The layers at a point, inner first; the film is the first piece."""
-    film = pieces[0]
-    outside = -film.thickness_mm / 2 if film.covers(s, Z) else film.thickness_mm / 2
+    """The layers at a point, inner first."""
+    at = next(number for number, piece in enumerate(pieces) if piece.name == "film")
+    film, within = pieces[at], sum(piece.thickness_mm for piece in pieces[:at])
+    outside = (-film.thickness_mm / 2 if film.covers(s, Z) else film.thickness_mm / 2) - within
     layers = []
     for piece in pieces:
         if piece.covers(s, Z):

@@ -106,7 +106,7 @@ def _reach(
     step = pressure - reached
     while True:
         target = min(pressure, reached + step)
-        guess = _extrapolated(known, target) if known else start
+        guess = extrapolated(known, target) if known else start
         most = _LARGEST_GROWTH * cell.volume_mm3(known[-1][1] if known else start)
         solved = _stable_state(cell, target, guess, free, most)
         if solved.converged:
@@ -126,7 +126,7 @@ def _stable_state(cell: Cell, pressure: float, guess: State, free: tuple[bool, b
     )
 
 
-def _extrapolated(known: list[tuple[float, State]], pressure: float) -> State:
+def extrapolated(known: list[tuple[float, State]], pressure: float) -> State:
     """The state at a pressure as a polynomial through the last states, of third order at most, would have it."""
     last = known[-4:]
     weights = [
