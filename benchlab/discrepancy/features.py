@@ -24,7 +24,7 @@ HOLD_EDGES = (0.0, 0.05, 0.2, 0.5, 1.0)
 POINTS, POINTS_AFTER_A_TURN = 3, 8
 """Points at which a model is evaluated, per interval; more in the first two after a turn, where lags and loops show."""
 
-REST_POINTS = 6
+DIRECTIONS = ("all", "hold", "loading", "rest", "unloading")
 LAST_CYCLE = 4
 """Cycles from this one on are taken together."""
 
@@ -45,10 +45,6 @@ class Feature:
     pressure_MPa: float = np.nan
     time_s: float = np.nan
     seconds: float = np.nan
-
-    @property
-    def key(self) -> tuple[int, int, int, str, int, str, int]:
-        return (self.design, self.kind, self.occurrence, self.quantity, self.cycle, self.direction, self.bin)
 
 
 @dataclass(frozen=True)
@@ -97,15 +93,23 @@ class Features:
         return total / number
 
 
-@dataclass
+@dataclass(frozen=True)
 class _Points:
-    """The points of one run as they are gathered."""
+    """The P points of one run, and the interval that each belongs to: cycle, direction, bin (P,), −1 for none; rates of the segments (P,).
 
-    time_s: list[float]
-    pressure_MPa: list[float]
-    command_MPa: list[float]
-    temperature_C: list[float]
-    cells: list[dict[str, tuple[Feature, float, int]]]
+    values, counts: by quantity, (P,): mean of the readings, NaN without one, and their number.
+    """
+
+    time_s: FloatArray
+    pressure_MPa: FloatArray
+    command_MPa: FloatArray
+    temperature_C: FloatArray
+    cycle: NDArray[np.int64]
+    direction: NDArray[np.int64]
+    bin: NDArray[np.int64]
+    rate_MPa_s: FloatArray
+    values: dict[str, FloatArray]
+    counts: dict[str, FloatArray]
 
 
 def features_of(runs: Sequence[Run], base: Base, top_MPa: float | None = None) -> tuple[Features, Scene]:
@@ -114,13 +118,9 @@ def features_of(runs: Sequence[Run], base: Base, top_MPa: float | None = None) -
     samples = sorted({(run.design, run.sample) for run in runs})
     top = top_MPa or max(float(np.nanmax(run.pressure_MPa)) for run in runs)
     kinds, kind_of, cuts = kinds_of(runs)
-    occurrence = _occurrences(runs, kind_of)
-    gathered = [
-        _points(run, cut, names.index(run.design), kind, occurrence[i], top)
-        for i, (run, cut, kind) in enumerate(zip(runs, cuts, kind_of))
-    ]
+    gathered = [_points(run, cut, top) for run, cut in zip(runs, cuts)]
     scene = _scene(runs, gathered, names, samples, base)
-    return _features(runs, gathered, kinds, names, samples), scene
+    return _features(runs, gathered, kinds, np.array([kind_of, _occurrences(runs, kind_of)]), names, samples), scene
 
 
 def _occurrences(runs: Sequence[Run], kind_of: Sequence[int]) -> list[int]:
@@ -136,28 +136,52 @@ def _occurrences(runs: Sequence[Run], kind_of: Sequence[int]) -> list[int]:
     return out
 
 
-def _points(run: Run, cut: Sequence[Segment], design: int, kind: int, occurrence: int, top_MPa: float) -> _Points:
-    points = _Points([], [], [], [], [])
-    if not cut:
-        _add(points, run, np.arange(len(run.time_s)), Feature(design, kind, occurrence, "", 1, "all", 0, np.nan))
-        return points
+def _points(run: Run, cut: Sequence[Segment], top_MPa: float) -> _Points:
+    """Readings taken together to points: at each turn one, in each interval a few."""
+    starts, about = [0], [(1, DIRECTIONS.index("all"), 0, np.nan)]
+    if cut:
+        starts, about = [], []
     for segment in cut:
-        _add(points, run, np.arange(segment.first, min(segment.first + 1, segment.last)), None)
-        for place, (indices, number) in enumerate(_intervals(run, segment, top_MPa)):
-            feature = None
-            if segment.direction != "rest":
-                cycle = min(segment.cycle, LAST_CYCLE)
-                feature = Feature(design, kind, occurrence, "", cycle, segment.direction, number, segment.rate_MPa_s)
-            wanted = POINTS_AFTER_A_TURN if place < 2 else POINTS
-            for part in np.array_split(indices, min(wanted, len(indices))):
-                _add(points, run, part, feature)
-    end = cut[-1]
-    _add(points, run, np.arange(end.last, end.last + 1), None)
-    return points
+        starts.append(segment.first)
+        about.append((-1, -1, -1, np.nan))
+        for place, (first, last, number) in enumerate(_intervals(run, segment, top_MPa)):
+            wanted = min(POINTS_AFTER_A_TURN if place < 2 else POINTS, last - first)
+            cycle = -1 if segment.direction == "rest" else min(segment.cycle, LAST_CYCLE)
+            told = (cycle, DIRECTIONS.index(segment.direction), number, segment.rate_MPa_s)
+            starts += [first + (last - first) * i // wanted for i in range(wanted)]
+            about += [told] * wanted
+    if cut:
+        starts.append(cut[-1].last)
+        about.append((-1, -1, -1, np.nan))
+    end = cut[-1].last + 1 if cut else len(run.time_s)
+    at = np.array(starts)
+    cycle, direction, number, rate = np.array(about).T
+
+    def mean(values: FloatArray | None) -> tuple[FloatArray, FloatArray]:
+        if values is None:
+            return np.full(len(at), np.nan), np.zeros(len(at))
+        good = np.isfinite(values[:end])
+        count = np.add.reduceat(good.astype(float), at)
+        total = np.add.reduceat(np.where(good, values[:end], 0.0), at)
+        return np.divide(total, count, out=np.full(len(at), np.nan), where=count > 0), count
+
+    means = {quantity: mean(values) for quantity, values in run.values.items()}
+    return _Points(
+        mean(run.time_s)[0],
+        mean(run.pressure_MPa)[0],
+        mean(run.command_MPa)[0],
+        mean(run.temperature_C)[0],
+        cycle.astype(int),
+        direction.astype(int),
+        number.astype(int),
+        rate,
+        {quantity: found[0] for quantity, found in means.items()},
+        {quantity: found[1] for quantity, found in means.items()},
+    )
 
 
-def _intervals(run: Run, segment: Segment, top_MPa: float) -> list[tuple[NDArray[np.int64], int]]:
-    """Indices of the readings in each interval of a segment, in the order of time."""
+def _intervals(run: Run, segment: Segment, top_MPa: float) -> list[tuple[int, int, int]]:
+    """First reading, reading after the last, and number of each interval of a segment, in the order of time."""
     inside = np.arange(segment.first + 1, segment.last)
     if len(inside) == 0:
         return []
@@ -165,41 +189,19 @@ def _intervals(run: Run, segment: Segment, top_MPa: float) -> list[tuple[NDArray
         since = (run.time_s[inside] - run.time_s[segment.first]) / max(segment.duration_s, 1e-12)
         number = np.clip(np.searchsorted(HOLD_EDGES, since, side="right") - 1, 0, len(HOLD_EDGES) - 2)
     else:
-        expected = np.interp(
-            run.time_s[inside],
-            [run.time_s[segment.first], run.time_s[segment.last]],
-            [segment.start_MPa, segment.end_MPa],
-        )
-        level = np.maximum.accumulate(run.pressure_MPa[inside]) if segment.direction == "loading" else None
-        level = np.minimum.accumulate(run.pressure_MPa[inside]) if level is None else level
-        straight = float(np.max(np.abs(expected - run.pressure_MPa[inside]))) < 0.05 * top_MPa
-        number = np.clip(((expected if straight else level) / top_MPa * BINS).astype(int), 0, BINS - 1)
-    borders = np.flatnonzero(np.diff(number)) + 1
-    return [(part, int(number[part[0] - inside[0]])) for part in np.split(inside, borders)]
+        number = np.clip((_level(run, segment, inside, top_MPa) / top_MPa * BINS).astype(int), 0, BINS - 1)
+    borders = [0, *(np.flatnonzero(np.diff(number)) + 1), len(inside)]
+    return [(int(inside[a]), int(inside[b - 1]) + 1, int(number[a])) for a, b in zip(borders[:-1], borders[1:])]
 
 
-def _add(points: _Points, run: Run, indices: NDArray[np.int64], feature: Feature | None) -> None:
-    if len(indices) == 0:
-        return
-    pressure = float(np.mean(run.pressure_MPa[indices]))
-    points.time_s.append(float(np.mean(run.time_s[indices])))
-    points.pressure_MPa.append(pressure)
-    points.command_MPa.append(_mean(run.command_MPa, indices))
-    points.temperature_C.append(_mean(run.temperature_C, indices))
-    cells: dict[str, tuple[Feature, float, int]] = {}
-    if feature is not None:
-        for quantity, values in run.values.items():
-            good = values[indices][np.isfinite(values[indices])]
-            if len(good):
-                cells[quantity] = (replace(feature, quantity=quantity), float(np.mean(good)), len(good))
-    points.cells.append(cells)
-
-
-def _mean(values: FloatArray | None, indices: NDArray[np.int64]) -> float:
-    if values is None:
-        return np.nan
-    good = values[indices][np.isfinite(values[indices])]
-    return float(np.mean(good)) if len(good) else np.nan
+def _level(run: Run, segment: Segment, inside: NDArray[np.int64], top_MPa: float) -> FloatArray:
+    """Pressure without its noise: the straight line where the segment is one, else the largest (smallest) so far."""
+    ends = [run.time_s[segment.first], run.time_s[segment.last]]
+    straight = np.interp(run.time_s[inside], ends, [segment.start_MPa, segment.end_MPa])
+    if float(np.max(np.abs(straight - run.pressure_MPa[inside]))) < 0.05 * top_MPa:
+        return np.asarray(straight)
+    so_far = np.maximum if segment.direction == "loading" else np.minimum
+    return np.asarray(so_far.accumulate(run.pressure_MPa[inside]))
 
 
 def _scene(
@@ -255,61 +257,67 @@ def _features(
     runs: Sequence[Run],
     gathered: Sequence[_Points],
     kinds: Sequence[Kind],
+    kind_and_occurrence: NDArray[np.int64],
     names: tuple[str, ...],
     samples: Sequence[tuple[str, str]],
 ) -> Features:
+    """Points of one sample in one interval become a cell, cells of one interval a feature."""
     place = {sample: i for i, sample in enumerate(samples)}
-    found: dict[tuple, list[tuple[int, int, str, Feature, float, int]]] = {}
+    quantities = sorted({quantity for points in gathered for quantity in points.values})
+    parts: list[FloatArray] = []
     for column, (run, points) in enumerate(zip(runs, gathered)):
-        sample = place[run.design, run.sample]
-        for row, cells in enumerate(points.cells):
-            for quantity, (feature, value, count) in cells.items():
-                found.setdefault((sample, feature.key), []).append((row, column, quantity, feature, value, count))
-    keys = sorted({key for _, key in found})
-    index = {key: i for i, key in enumerate(keys)}
-    cells = sorted(found, key=lambda cell: (cell[0], index[cell[1]]))
-    shape = (max(len(points.time_s) for points in gathered), len(runs))
-    quantities = sorted({key[3] for key in keys})
-    of_point = {quantity: np.full(shape, -1) for quantity in quantities}
-    value, count = np.zeros(len(cells)), np.zeros(len(cells))
-    about: dict[int, list[tuple[float, float, float, Feature]]] = {}
-    for number, cell in enumerate(cells):
-        entries = found[cell]
-        count[number] = sum(entry[5] for entry in entries)
-        value[number] = sum(entry[4] for entry in entries) / len(entries)
-        for row, column, quantity, _, _, _ in entries:
-            of_point[quantity][row, column] = number
-        times = [gathered[column].time_s[row] - gathered[column].time_s[0] for row, column, *_ in entries]
-        pressures = [gathered[column].pressure_MPa[row] for row, column, *_ in entries]
-        about.setdefault(index[cell[1]], []).append(
-            (
-                float(np.mean(pressures)),
-                float(np.mean(times)),
-                float(np.ptp(times)) * len(times) / max(len(times) - 1, 1),
-                entries[0][3],
-            )
+        kind, occurrence = kind_and_occurrence[:, column]
+        head = [place[run.design, run.sample], names.index(run.design), kind, occurrence]
+        for quantity, values in points.values.items():
+            row = np.flatnonzero(np.isfinite(values) & (points.cycle >= 0))
+            key = [quantities.index(quantity), points.cycle[row], points.direction[row], points.bin[row]]
+            about = [
+                points.rate_MPa_s,
+                points.pressure_MPa,
+                points.time_s - points.time_s[0],
+                values,
+                points.counts[quantity],
+            ]
+            columns = [*head, *key, *(values[row] for values in about), row, column]
+            parts.append(np.array([np.broadcast_to(values, row.shape) for values in columns]))
+    table = np.concatenate(parts, axis=1)
+    keys, feature_of = np.unique(table[1:8].astype(int), axis=1, return_inverse=True)
+    cell_keys, cell = np.unique(np.array([table[0].astype(int), feature_of.ravel()]), axis=1, return_inverse=True)
+    cell, number = cell.ravel(), cell_keys.shape[1]
+    points_in = np.bincount(cell, minlength=number)
+
+    def per_cell(row: int) -> FloatArray:
+        return np.asarray(np.bincount(cell, table[row], minlength=number) / points_in)
+
+    first, last = np.full(number, np.inf), np.full(number, -np.inf)
+    np.minimum.at(first, cell, table[10])
+    np.maximum.at(last, cell, table[10])
+    seconds = (last - first) * points_in / np.maximum(points_in - 1, 1)
+    per_feature = np.bincount(cell_keys[1])
+    rate, pressure, time, length = (
+        np.bincount(cell_keys[1], values) / per_feature for values in (per_cell(8), per_cell(9), per_cell(10), seconds)
+    )
+    of_point = {}
+    for i, quantity in enumerate(quantities):
+        of_point[quantity] = np.full((max(len(points.time_s) for points in gathered), len(runs)), -1)
+        mine = table[4] == i
+        of_point[quantity][table[13, mine].astype(int), table[14, mine].astype(int)] = cell[mine]
+    features = tuple(
+        Feature(
+            design, kind, occurrence, quantities[quantity], cycle, DIRECTIONS[direction], place, *map(float, numbers)
         )
-    features = []
-    for i in range(len(keys)):
-        numbers = np.array([entry[:3] for entry in about[i]]).mean(axis=0)
-        rate = float(np.mean([entry[3].rate_MPa_s for entry in about[i]]))
-        features.append(
-            replace(
-                about[i][0][3],
-                rate_MPa_s=rate,
-                pressure_MPa=numbers[0],
-                time_s=numbers[1],
-                seconds=numbers[2],
-            )
+        for (design, kind, occurrence, quantity, cycle, direction, place), *numbers in zip(
+            keys.T.tolist(), rate, pressure, time, length
         )
+    )
     return Features(
-        features=tuple(features),
+        features=features,
         kinds=tuple(kinds),
         sample_names=tuple(f"{design} {sample}" for design, sample in samples),
         sample_design=np.array([names.index(design) for design, _ in samples]),
-        sample=np.array([cell[0] for cell in cells]),
-        feature=np.array([index[cell[1]] for cell in cells]),
-        value=value,
-        count=count,
+        sample=cell_keys[0],
+        feature=cell_keys[1],
+        value=per_cell(11),
+        count=np.bincount(cell, table[12], minlength=number),
         of_point=of_point,
     )
