@@ -46,7 +46,7 @@ def scatter_of(features: Features) -> Scatter:
     mean = feature_means(features)
     quantities = features.quantities
     blocks = [
-        _components([features.features[i] for i in where], mean[where], _count(features)[where]) for where in indices
+        components_of([features.features[i] for i in where], mean[where], _count(features)[where]) for where in indices
     ]
     patterns = _patterns(features, indices, mean)
     log_sd, freedom = {}, sum(max(int((features.sample_design == d).sum()) - 1, 0) for d in range(designs))
@@ -74,7 +74,7 @@ def _count(features: Features) -> FloatArray:
     return np.asarray(np.bincount(features.feature, minlength=len(features.features)) / total)
 
 
-def _components(features: list[Feature], mean: FloatArray, count: FloatArray) -> dict[str, FloatArray]:
+def components_of(features: list[Feature], mean: FloatArray, count: FloatArray) -> dict[str, FloatArray]:
     """By quantity: (components, F_d, F_d) covariance of each component at unit standard deviation."""
     pressure = np.array([f.pressure_MPa for f in features])
     time = np.array([f.time_s for f in features])
