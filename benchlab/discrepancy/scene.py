@@ -104,11 +104,9 @@ class Scene:
         """(T, R) values as they were delay_s before (after, where it is negative), straight between points; still beyond a run's ends."""
         if delay_s == 0:
             return value
-        apart = 2 * (np.max(self.time_s) + abs(delay_s)) + 1
-        runs = apart * np.arange(value.shape[1])
-        asked = np.clip(self.time_s - delay_s, 0, self.time_s[-1]) + runs
-        known = (self.time_s + runs).T.ravel()
-        return np.interp(asked.T.ravel(), known, value.T.ravel()).reshape(value.T.shape).T
+        asked = np.clip(self.time_s - delay_s, 0, self.time_s[-1])
+        columns = (np.interp(*run) for run in zip(asked.T, self.time_s.T, value.T))
+        return np.stack(list(columns), axis=1)
 
     def play(self, value: FloatArray, half_width: FloatArray | float, start: FloatArray | None = None) -> FloatArray:
         """Backlash: the output stands still while the input moves within ± half_width (a number or (T, R)) of it."""

@@ -4,8 +4,8 @@
 
 τ `lag_s`; c: the command where it is known for a whole run, else the recorded pressure p. What lags behind the
 command is taken off the recorded pressure, so that without a lag the recorded pressure is that inside, and its noise
-is not filtered. Forms: `second order`: two such lags of τ/2; `delay`: x(t) = c(t − τ). In a ramp all of them are τ
-behind.
+is not filtered. Forms: `second order`: two lags in a row, of 2τ/3 and τ/3; `delay`: x(t) = c(t − τ). In a ramp all of
+them are τ behind.
 By nature confounded: with clock_offset (the form `delay` wholly, in the angle; volume and force tell them apart) and
 with line_resistance where the designs' dV/dp are alike.
 """
@@ -54,5 +54,5 @@ def _late(asked_MPa: FloatArray, lag_s: float, at: At) -> FloatArray:
     if at.form == "delay":
         return at.scene.delayed(asked_MPa, lag_s)
     if at.form == "second order":
-        return at.scene.follow(at.scene.follow(asked_MPa, lag_s / 2), lag_s / 2)
+        return 2 * at.scene.follow(asked_MPa, 2 * lag_s / 3) - at.scene.follow(asked_MPa, lag_s / 3)
     return at.scene.follow(asked_MPa, lag_s)
