@@ -56,3 +56,22 @@ def _longer(design: DesignBase, ratio: float) -> DesignBase:
     shape = design.shape and replace(design.shape, length_mm=design.shape.length_mm * ratio)
     curves = {name: ratio * curve for name, curve in design.curves.items() if name != "force_N"}
     return replace(design, shape=shape, curves=curves)
+
+
+def name_at(base: Base, design: str, ratio: float) -> str:
+    """What samples of a design in another length are called: by their length, where it is known.
+
+    >>> name_at(Base({"a": DesignBase("a", np.zeros(1), {})}, "foreign", ""), "a", 2.0)
+    'a_x2'
+    """
+    shape = base.designs[design].shape
+    if ratio == 1:
+        return design
+    return f"{design}_x{ratio:g}" if shape is None else f"{design}_{shape.length_mm * ratio:g}mm"
+
+
+def with_length(base: Base, designs: Sequence[str], ratio: float) -> Base:
+    """The base with designs of another length beside its own."""
+    made = of_length(base, designs, ratio).designs
+    new = {name_at(base, name, ratio): replace(made[name], name=name_at(base, name, ratio)) for name in designs}
+    return replace(base, designs={**base.designs, **new})
