@@ -24,7 +24,8 @@ KNOBS = {
 class Knob:
     """How the curves of one design change with one knob. values: (K,), increasing, the neutral one among them.
 
-    factor: of each quantity (angle_deg, volume_mL, force_N), (K, P) over the pressures of the design: curve at the value over curve at neutral.
+    factor: of each quantity (angle_deg, volume_mL, force_N), (K, P) over the pressures of the design: curve at the value over curve at
+    neutral.
     """
 
     values: FloatArray
@@ -33,8 +34,9 @@ class Knob:
 
 @dataclass(frozen=True)
 class DesignBase:
-    """Simulated curves of one design. pressure_MPa: (P,), increasing from 0. curves: angle_deg, and volume_mL, force_N where known, (P,) each.
+    """Simulated curves of one design.
 
+    pressure_MPa: (P,), increasing from 0. curves: angle_deg, and volume_mL, force_N where known, (P,) each.
     shape: the design, None where it is not known. knobs: by names of KNOBS, those that were computed.
     """
 
@@ -49,7 +51,7 @@ class DesignBase:
 class Base:
     """Designs by name. kind: cell, beam or foreign. source: in words. error: of its numbers, relative (u_num of V&V 20).
 
-    missing: designs that could not be simulated, each with its reason.
+    missing: designs that could not be simulated, each with its reason. warnings: curves and knobs that end early, a cache that was damaged.
     """
 
     designs: Mapping[str, DesignBase]
@@ -57,6 +59,7 @@ class Base:
     source: str
     error: float = 0.005
     missing: Mapping[str, str] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
 
     def largest_pressure_MPa(self, design: str) -> float:
         return float(np.max(self.designs[design].pressure_MPa))

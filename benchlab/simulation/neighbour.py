@@ -2,51 +2,57 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from benchlab.simulation.cell import Cell, State
-from benchlab.simulation.newton import minimise
+from benchlab.simulation.newton import Solved, minimise
 from benchlab.simulation.response import Path, PathPoint, extrapolated, follow, moment_Nmm
 
 TOLERANCE = 1e-3
 """Of a last step, against 1e-5 of a path from the round tube: the state is good to about 1e-6, far below what a curve shows."""
 
 
-def follow_beside(cell: Cell, beside: Sequence[PathPoint], held_k: float | None = None) -> Path:
-    """Stable states of `cell` at the pressures of a neighbour's states, as `response.follow` would find them in twice the time.
+def follow_beside(
+    cell: Cell,
+    pressures_MPa: Sequence[float],
+    beside: Path | None = None,
+    held_k: float | None = None,
+    reached: Callable[[], None] | None = None,
+) -> Path:
+    """Stable states of `cell`, as `response.follow` finds them, but each from the state of a neighbour at the same pressure, moved by
+    how the states before it were moved (a polynomial in the pressure).
 
-    Each search begins at the neighbour's state, moved by how the states before it were moved (a polynomial in the pressure). Where
-    one is not found, or the meshes differ, the whole path is followed from the round tube.
+    Without a neighbour, where its mesh is another, it lacks a pressure, or a state is not found, the whole path is followed from the
+    round tube.
     """
-    if beside and len(beside[0].state.fields) == len(cell.held):
-        points = _beside(cell, beside, held_k)
+    states = {point.pressure_MPa: point.state for point in beside.points} if beside else {}
+    if all(p in states and len(states[p].fields) == len(cell.held) for p in pressures_MPa):
+        points = _beside(cell, [(float(p), states[p]) for p in pressures_MPa], held_k, reached)
         if points is not None:
             return Path(points, None)
-    return follow(cell, [point.pressure_MPa for point in beside], held_k)
+    return follow(cell, pressures_MPa, held_k, reached)
 
 
-def _beside(cell: Cell, beside: Sequence[PathPoint], held_k: float | None) -> tuple[PathPoint, ...] | None:
+def _beside(
+    cell: Cell, neighbours: Sequence[tuple[float, State]], held_k: float | None, reached: Callable[[], None] | None
+) -> tuple[PathPoint, ...] | None:
     moved: list[tuple[float, State]] = []
     points: list[PathPoint] = []
-    for point in beside:
-        pressure, start = point.pressure_MPa, point.state
-        if moved:
-            start = _sum(start, extrapolated(moved[-3:], pressure))
-        if held_k is not None:
-            start = replace(start, k=held_k)
-        solved = minimise(
-            lambda at, p=pressure: cell.potential(at, p),  # type: ignore[misc]
-            start,
-            free=(held_k is None, True),
-            tolerance=TOLERANCE,
-        )
+    for pressure, neighbour in neighbours:
+        start = _sum(neighbour, extrapolated(moved[-3:], pressure)) if moved else neighbour
+        solved = _from(cell, pressure, start if held_k is None else replace(start, k=held_k), held_k is None)
         if not solved.converged:
             return None
-        moved.append((pressure, _sum(solved.state, point.state, -1.0)))
-        moment = 0.0 if held_k is None else moment_Nmm(cell, solved)
-        points.append(PathPoint(pressure, solved.state, moment))
+        moved.append((pressure, _sum(solved.state, neighbour, -1.0)))
+        points.append(PathPoint(pressure, solved.state, 0.0 if held_k is None else moment_Nmm(cell, solved)))
+        if reached:
+            reached()
     return tuple(points)
+
+
+def _from(cell: Cell, pressure_MPa: float, start: State, bends: bool) -> Solved:
+    return minimise(lambda at: cell.potential(at, pressure_MPa), start, free=(bends, True), tolerance=TOLERANCE)
 
 
 def _sum(a: State, b: State, times: float = 1.0) -> State:

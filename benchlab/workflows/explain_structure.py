@@ -10,13 +10,12 @@ from benchlab.discrepancy.base import KNOBS
 from benchlab.errors import UsageError
 from benchlab.simulation.laws import Law, describe_law, make_law
 from benchlab.simulation.layup import Layup, widest_margin_mm
-from benchlab.units import FloatArray
 
 KNOB_VALUES = {
     "film_modulus": (0.5, 0.7, 1.0, 1.3, 1.6),
     "fabric_modulus": (0.25, 0.5, 1.0, 1.8, 3.0),
     "seam_margin_mm": (0.0, 0.4, 0.8, 1.2),
-    "bladder_N_per_mm": (0.0, 0.4, 1.0, 2.0),
+    "bladder_N_per_mm": (0.0, 0.5, 1.5, 3.0, 5.0),
     "ballooning": (0.0, 0.25, 0.5, 0.75, 1.0),
 }
 """Values at which each knob is simulated, chosen wide enough for what such actuators may have; between them curves are interpolated."""
