@@ -1,15 +1,15 @@
 """softening: the film is stiff the first time and softer ever after, up to the largest strain so far (Mullins).
 
-    E → E·(1 − d·D)          D = (1 − u/m)·G·2, at most G (plain)          G = 1 − exp(−N/n)          N = ∫|du|/(2m) below m
+    E → E·(1 − d·D)          D = (1 − u/m)·G·2, at most G (plain)          G = 1 − exp(−N/n)          N = W/(2m)
 
 d `softer`: share of the film's stiffness that is lost; n `cycles`: number in which it goes; u: angle of the base at
-this pressure, the measure of strain; m: the largest so far, on the sample where the order of its runs is known; N:
-cycles gone below it (moves under 3 % of m do not count). The base is a virgin film, as a tension test to rupture has
-it. Forms: `plain`: nothing is lost at the largest strain, all of it at half and below (after Ogden and Roxburgh's
-idea, the straight line is chosen); `cycle by cycle`: D = G, so that each loading to m goes farther than the last;
-`largest so far`: D = m/M, M the base's at its highest pressure, and softens from the first loading on; `run in`: the
-base is a film that was cycled, D = G − 1, and the first loading is stiffer. It acts through the knob `film_modulus`
-where the base has it, else on the angle as θ/(1 − d·D).
+this pressure, the measure of strain; m: the largest so far, on the sample where the order of its runs is known; W:
+way gone below it, to and fro (moves under 3 % of m do not count), N: as many cycles to m. The base is a virgin film,
+as a tension test to rupture has it. Forms: `plain`: nothing is lost at the largest strain, all of it at half and
+below (after Ogden and Roxburgh's idea, the straight line is chosen); `cycle by cycle`: D = G, so that each loading to
+m goes farther than the last; `largest so far`: D = m/M, M the base's at its highest pressure, and softens from the
+first loading on; `run in`: the base is a film that was cycled, D = G − 1, and the first loading is stiffer. It acts
+through the knob `film_modulus` where the base has it, else on the angle as θ/(1 − d·D).
 By nature confounded: with friction where each sample is loaded once; with viscoelasticity where there is one rate and
 no hold.
 """
@@ -90,5 +90,5 @@ def _cycles_below(scene: Scene, strain: FloatArray, largest: FloatArray) -> Floa
     moved = scene.play(strain, half)
     way = np.abs(np.diff(moved, axis=0, prepend=moved[:1]))
     front = np.diff(largest - half, axis=0, prepend=(largest - half)[:1])
-    below = np.cumsum(np.maximum(way - np.maximum(front, 0.0), 0.0) / (2 * largest), axis=0)
-    return below + scene.sum_before(below[-1])
+    below = np.cumsum(np.maximum(way - np.maximum(front, 0.0), 0.0), axis=0)
+    return (below + scene.sum_before(below[-1])) / (2 * largest)
