@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -189,6 +189,27 @@ def cut(text: object, length: int = 60) -> str:
         return plain
     tail = min(max(4, length // 4), length // 2)
     return plain[: length - tail - 1] + "…" + plain[-tail:]
+
+
+def listed(rows: Sequence[tuple[str, str]], whole: str, most: int = 100) -> Items:
+    """A list of what and why, cut. whole: the file that has all of a longer one."""
+    shown = [(cut(what, 160), cut(why, 400)) for what, why in rows[:most]]
+    if len(rows) > most:
+        shown.append((f"and {len(rows) - most} more", f"all are in {whole}"))
+    return Items(tuple(shown))
+
+
+def marked(section: Section, mark: str) -> Section:
+    """The section with a mark before the captions of its tables and pictures; as it is for ""."""
+    if not mark:
+        return section
+    blocks = (
+        replace(block, caption=f"{mark.capitalize()}. {block.caption}")
+        if isinstance(block, Pictures | Table)
+        else block
+        for block in section.blocks
+    )
+    return replace(section, blocks=tuple(blocks))
 
 
 def _machine(value: Value) -> str:

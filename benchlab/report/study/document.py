@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import shlex
-from dataclasses import replace
-from pathlib import Path
-
 from benchlab.errors import counted
-from benchlab.report.document import Block, Cell, Column, Document, Items, Pictures, Section, Table, Words, cut
-from benchlab.report.rounding import words
+from benchlab.report.document import Block, Document, Section, Words, cut, listed, marked
+from benchlab.report.provenance import PROVENANCE, provenance_section
 from benchlab.report.study.differences import (
     all_warnings,
     assumptions_table,
@@ -25,8 +21,7 @@ from benchlab.report.study.report import StudyReport, found_sets
 from benchlab.report.study.tables import designs_table, samples_table
 from benchlab.report.study.verdict import verdict_section
 
-MOST_LISTED = 100
-PROVENANCE = "Provenance"
+NUMBERS = "report.json"
 
 
 def study_document(report: StudyReport) -> Document:
@@ -50,23 +45,14 @@ def study_document(report: StudyReport) -> Document:
         title=cut(f"{mark.capitalize()}: {report.values.title}" if mark else report.values.title, 140),
         statement=" ".join(filter(None, (words, cut(report.values.notes.strip(), 600)))),
         facts=_facts(report),
-        sections=tuple(_marked(section, mark) for section in sections if section.blocks),
+        sections=tuple(
+            marked(section, mark if section.title not in (FORCE, PROVENANCE) else "")
+            for section in sections
+            if section.blocks
+        ),
         foot=f"Written by benchlab {report.provenance['versions']['benchlab']}. This page asks nothing of the network.",
         data=(consistency_table(report),) if report.whole.found else (),
     )
-
-
-def _marked(section: Section, mark: str) -> Section:
-    """The section with a mark before the captions of what is not measured; those of force and of the files read have none."""
-    if not mark or section.title in (FORCE, PROVENANCE):
-        return section
-    blocks = (
-        replace(block, caption=f"{mark.capitalize()}. {block.caption}")
-        if isinstance(block, Pictures | Table)
-        else block
-        for block in section.blocks
-    )
-    return replace(section, blocks=tuple(blocks))
 
 
 def _facts(report: StudyReport) -> tuple[str, ...]:
@@ -97,36 +83,17 @@ def _doubts(report: StudyReport) -> list[Section]:
     blocks: list[Block] = []
     for what, found in (("Failed or missing", values.failures), ("Left out", values.left_out)):
         if found:
-            blocks += [Words(f"{what}: {len(found)}."), _items([(one.what, one.why) for one in found])]
+            blocks += [Words(f"{what}: {len(found)}."), listed([(one.what, one.why) for one in found], NUMBERS)]
     if not blocks:
         blocks.append(Words("Nothing: every recording of the study has a value and counts."))
     warnings = all_warnings(report)
     sections = [Section("Left out and failed", tuple(blocks))]
     if warnings:
-        sections.append(Section("Warnings", (_items(warnings),)))
+        sections.append(Section("Warnings", (listed(warnings, NUMBERS),)))
     return sections
-
-
-def _items(rows: list[tuple[str, str]]) -> Items:
-    shown = [(cut(what, 160), cut(why, 400)) for what, why in rows[:MOST_LISTED]]
-    if len(rows) > MOST_LISTED:
-        shown.append((f"and {len(rows) - MOST_LISTED} more", "all are in report.json"))
-    return Items(tuple(shown))
 
 
 def _provenance(report: StudyReport) -> Section:
     made = report.provenance
-    versions = ", ".join(f"{name} {version}" for name, version in made["versions"].items())
-    command = shlex.join([Path(made["argv"][0]).name, *made["argv"][1:]])
-    rows = [("Command", command), ("Made", made["created"]), ("Versions", versions)]
-    if "study" in made:
-        rows.insert(0, ("Study file", made["study"]))
-    if made.get("git"):
-        rows.append(("Source", f"commit {made['git']}"))
-    inputs = tuple((words(name, 80), Cell(digest, f"{digest[:16]}…")) for name, digest in report.values.inputs.items())
-    columns = (Column("file", "file", False), Column("sha256", "SHA-256", False))
-    note = "The whole sums stand in the CSV file and in report.json."
-    return Section(
-        PROVENANCE,
-        (Items(tuple((what, cut(text, 400)) for what, text in rows)), Table("inputs", "What was read.", columns, inputs, note)),
-    )  # fmt: skip
+    study = [("Study file", made["study"])] if "study" in made else []
+    return provenance_section(study, made, report.values.inputs, NUMBERS)

@@ -1,0 +1,195 @@
+"""What was explained as a document: verdict, where, what, rivals, gap before and after, held-out data, what is left, next experiment."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from benchlab.discrepancy.effects.effect import Effect
+from benchlab.discrepancy.explanation import Explanation
+from benchlab.errors import counted
+from benchlab.protocol.plan import Plan
+from benchlab.report.document import Block, Document, Section, Tile, Tiles, Words, cut, listed, marked
+from benchlab.report.explain.change_figure import Change
+from benchlab.report.explain.named import named_blocks
+from benchlab.report.explain.names import mark_of
+from benchlab.report.explain.pictures import changes_picture, curves_pictures, map_pictures, protocol_pictures
+from benchlab.report.explain.quantity import effect_words, main_quantity
+from benchlab.report.explain.regions import told_regions
+from benchlab.report.explain.tables import (
+    curves_table,
+    designs_table,
+    held_out_table,
+    regions_table,
+    rivals_table,
+)
+from benchlab.report.explain.words import (
+    SIMULATED,
+    false_naming_words,
+    next_lines,
+    percent,
+    set_words,
+    verdict_title,
+    verdict_words,
+)
+from benchlab.report.provenance import PROVENANCE, provenance_section
+
+NUMBERS = "explain.json"
+
+_READ = (
+    ("Gap", "measured less model, of the means of the samples, in bins of pressure (in holds: of time); RMSE: its root mean square."),
+    ("Noise floor", "by how much a sample scatters about the mean of its own design: no model comes nearer to an unseen sample."),
+    ("Ceiling", "the share of the gap that any smooth curve of design, direction and kind of run could explain; the rest is scatter."),
+    ("p", "how often a gap as large comes from the scatter of samples alone; it holds for all places looked at together."),
+    ("Left", "not to be told from the best explanation by these data. Where several are left, none is known to be the cause."),
+    ("Equivalent", "parameters belong to the equation that is shown; another equation of the same effect has other numbers."),
+)  # fmt: skip
+
+
+def explain_document(
+    explanation: Explanation,
+    vocabulary: Mapping[str, Effect],
+    provenance: Mapping[str, Any],
+    inputs: Mapping[str, str] | None = None,
+    plan: Plan | None = None,
+) -> Document:
+    """The whole report. vocabulary: effects by name. provenance: as workflows.provenance.made_by gives it. inputs: SHA-256 by file read.
+    plan: of the next experiment, where it is known."""
+    mark = mark_of(explanation)
+    sections = [
+        Section("Verdict", tuple(_verdict(explanation))),
+        Section("Where", tuple(_where(explanation))),
+        Section("What", tuple(named_blocks(explanation, vocabulary))),
+        Section("Rivals", tuple(_rivals(explanation))),
+        Section("The gap before and after", tuple(_gap(explanation))),
+        Section("What the fit had not seen", tuple(_held_out(explanation))),
+        Section("What is left", tuple(_left(explanation))),
+        Section("What these data cannot judge", tuple(_not_judged(explanation, vocabulary))),
+        Section("Next experiment", tuple(_next(explanation, plan))),
+        Section("Warnings", tuple(Words(cut(line, 400), "warning") for line in explanation.warnings)),
+        Section("How to read this", (listed(_READ, NUMBERS),)),
+        provenance_section((("Simulation", explanation.base),), provenance, inputs or {}, NUMBERS),
+    ]
+    title = f"Explained: {verdict_title(explanation)}"
+    return Document(
+        title=cut(f"{mark.capitalize()}: {title}" if mark else title, 140),
+        statement=SIMULATED * explanation.simulated,
+        facts=_facts(explanation, provenance),
+        sections=tuple(
+            marked(section, mark if section.title != PROVENANCE else "") for section in sections if section.blocks
+        ),
+        foot=f"Written by benchlab {provenance['versions']['benchlab']}. This page asks nothing of the network.",
+        data=(curves_table(explanation),),
+    )
+
+
+def _facts(explanation: Explanation, provenance: Mapping[str, Any]) -> tuple[str, ...]:
+    designs = len(set(explanation.curves.design.tolist()))
+    return (
+        cut(explanation.source, 80),
+        f"{counted(designs, 'design')}, {counted(explanation.samples, 'sample')}",
+        f"simulation: {cut(explanation.base, 60)}",
+        provenance["created"][:10],
+    )
+
+
+def _verdict(explanation: Explanation) -> Iterator[Block]:
+    yield Tiles(tuple(_tiles(explanation)))
+    yield Words(verdict_words(explanation), "lead")
+    if math.isfinite(explanation.false_naming):
+        words = false_naming_words(explanation)
+        yield Words(f"{words[:1].upper()}{words[1:]}.", "small")
+
+
+def _tiles(explanation: Explanation) -> Iterator[Tile]:
+    quantity, gap = main_quantity(explanation.curves), explanation.gap
+    held = math.isfinite(gap.heldout_before) and math.isfinite(gap.heldout_after)
+    before, after = (gap.heldout_before, gap.heldout_after) if held else (gap.rmse_before, gap.rmse_after)
+    where = "on held-out samples" if held else "on the data of the fit"
+    if explanation.effects:
+        value = f"{quantity.amount(before)} → {quantity.amount(after)}"
+        yield Tile(value, f"gap, root mean square, {where}", f"{quantity.noun}, before → after")
+    else:
+        yield Tile(quantity.amount(before), f"gap, root mean square, {where}", quantity.noun)
+    if math.isfinite(gap.noise_floor):
+        yield Tile(quantity.amount(gap.noise_floor), "noise floor", "a sample about the mean of its design")
+    share = _share(explanation)
+    if share is not None:
+        ceiling = f"; any model: at most {percent(gap.ceiling)}" if math.isfinite(gap.ceiling) else ""
+        yield Tile(
+            percent(share), "of the gap explained", f"{set_words([f.name for f in explanation.effects])}{ceiling}"
+        )
+    if explanation.verdict == "ambiguous":
+        yield Tile(str(len(explanation.rivals)), "explanations left", "not to be told apart by these data")
+
+
+def _share(explanation: Explanation) -> float | None:
+    """Of the gap, by all that was named together; None where nothing was, or it is not told."""
+    names = {found.name for found in explanation.effects}
+    together = [one.share_explained for one in explanation.tried if names and set(one.names) == names]
+    if not together and len(names) == 1:
+        together = [explanation.effects[0].share_explained]
+    return together[0] if together and math.isfinite(together[0]) else None
+
+
+def _where(explanation: Explanation) -> Iterator[Block]:
+    sentences = told_regions(explanation.where, explanation.curves, most=12)
+    if not sentences:
+        yield Words("Nowhere do measured and simulated differ by more than the scatter of the samples explains.")
+    for sentence in sentences:
+        yield Words(f"{sentence[:1].upper() if sentence.startswith('all ') else sentence[:1]}{sentence[1:]}.")
+    yield map_pictures(explanation)
+    if explanation.where:
+        yield regions_table(explanation)
+
+
+def _rivals(explanation: Explanation) -> Iterator[Block]:
+    if explanation.verdict == "ambiguous":
+        rivals = "; ".join(set_words(names) for names in explanation.rivals)
+        yield Words(f"Not told apart by these data: {rivals}.", "lead")
+    if explanation.tried:
+        yield rivals_table(explanation)
+
+
+def _gap(explanation: Explanation) -> Iterator[Block]:
+    yield from curves_pictures(explanation)
+    yield designs_table(explanation)
+
+
+def _held_out(explanation: Explanation) -> Iterator[Block]:
+    if not explanation.held_out:
+        return
+    rows = [Change(f"{cut(one.kind, 20)} {cut(one.what, 50)}", one.before, one.after, one.noise_floor)
+            for one in explanation.held_out]  # fmt: skip
+    yield Words("Each was left out of the fit in turn, and then predicted.")
+    yield changes_picture(explanation, rows, "held_out", "Left out, and predicted")
+    yield held_out_table(explanation)
+
+
+def _left(explanation: Explanation) -> Iterator[Block]:
+    for line in explanation.remainder:
+        yield Words(f"{cut(line, 400)}{'' if line.endswith('.') else '.'}")
+    if explanation.effects:
+        if not explanation.remainder:
+            yield Words("Nothing that depends on design, direction, rate, cycle or pressure more than scatter does.")
+        yield map_pictures(explanation, "explained")
+
+
+def _not_judged(explanation: Explanation, vocabulary: Mapping[str, Effect]) -> Iterator[Block]:
+    rows = []
+    for name, reason in explanation.judged_not.items():
+        shown_by = f" What would show it: {vocabulary[name].shown_by}." if name in vocabulary else ""
+        rows.append((effect_words(name), f"{cut(reason, 200)}.{shown_by}"))
+    if rows:
+        yield Words("That these are not named says nothing about them: data like these cannot show them.")
+        yield listed(rows, NUMBERS)
+
+
+def _next(explanation: Explanation, plan: Plan | None) -> Iterator[Block]:
+    for index, line in enumerate(next_lines(explanation.next_experiment)):
+        command = line.startswith("benchlab run")
+        yield Words(line if command else f"{line[:1].upper()}{line[1:]}{'' if line.endswith('.') else '.'}",
+                    "plain" if index else "lead", "To run it:" * command)  # fmt: skip
+    if plan is not None:
+        yield protocol_pictures(plan)

@@ -1,0 +1,73 @@
+"""What was named: each effect with its physics, its equation, how it looks, which test shows it, and its parameters."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import sys
+from collections.abc import Iterator, Mapping
+
+from benchlab.discrepancy.effects.effect import Effect
+from benchlab.discrepancy.explanation import Explanation, Found
+from benchlab.report.document import Block, Words, cut
+from benchlab.report.explain.quantity import effect_words
+from benchlab.report.explain.regions import and_words
+from benchlab.report.explain.tables import parameters_table
+from benchlab.report.explain.words import percent
+
+_WIDE = re.compile(r"\s{2,}")
+_SIGNS = re.compile(r"\s*\([a-z ]+\)$")
+
+
+def named_blocks(explanation: Explanation, vocabulary: Mapping[str, Effect]) -> Iterator[Block]:
+    """Nothing where nothing was named."""
+    if not explanation.effects:
+        return
+    if explanation.verdict == "ambiguous":
+        yield Words(
+            "This is the best of the explanations that are left; see the rivals before building on it.", "warning"
+        )
+    if explanation.verdict == "unexplained":
+        yield Words("This comes nearest, but does not explain the gap: it is not named as a cause.", "warning")
+    for found in explanation.effects:
+        yield from _effect(found, vocabulary.get(found.name))
+    yield parameters_table(explanation)
+    if any(found.form not in ("", "plain") or found.other_forms for found in explanation.effects):
+        yield Words("Where other forms fit alike, the parameters are equivalent ones: they reproduce the curves, and a constant of the "
+                    "material that enters another equation will differ from them.", "small")  # fmt: skip
+
+
+def _effect(found: Found, effect: Effect | None) -> Iterator[Block]:
+    name = effect_words(found.name)
+    head = f"{name[:1].upper()}{name[1:]}"
+    share = f"It explains {percent(found.share_explained)} of the gap."
+    if effect is None:
+        yield Words(share, "lead", f"{head}.")
+        return
+    yield Words(f"{share} {cut(effect.physics, 1200)}", "lead", f"{head}.")
+    for line in equation_of(effect):
+        yield Words(line, head="Equation.")
+    forms = (
+        f"; other forms fit alike: {and_words([cut(form, 30) for form in found.other_forms])}"
+        if found.other_forms
+        else ""
+    )
+    yield Words(f"{cut(found.form, 30)}{forms}.", head="Form.")
+    yield Words(f"{cut(effect.looks_like, 400)}. Shown by: {cut(effect.shown_by, 400)}.", head="Looks like:")
+
+
+def equation_of(effect: Effect) -> list[str]:
+    """The equations in the documentation of an effect's file: its lines that are set in.
+
+    >>> from benchlab.discrepancy.effects.friction import Friction
+    >>> equation_of(Friction())[0][:8]
+    'θ = P(u)'
+    """
+    module = sys.modules.get(type(effect).__module__)
+    lines = (inspect.getdoc(module) or "").splitlines() if module else []
+    indented = [
+        _SIGNS.sub("", line).strip()
+        for line in lines
+        if line.startswith("    ") and not line.lstrip().startswith((">>>", "..."))
+    ]
+    return [cut(_WIDE.sub("; ", line), 300) for line in indented if "=" in line or "≤" in line]

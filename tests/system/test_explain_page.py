@@ -1,0 +1,24 @@
+"""The page of an explanation opened in headless Chromium: nothing overlaps, nothing is cut off, everything can be read."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import pytest
+
+from benchlab.report.page import render_page
+from tests.system.chromium import chromium, layout
+from tests.unit.report import explanations
+
+
+@cache
+def page_of(kind: str) -> str:
+    return render_page(explanations.document(explanations.ALL[kind]()))
+
+
+@pytest.mark.parametrize("width", [1200, 400])
+@pytest.mark.parametrize("kind", ["ambiguous", "the published table", "fourteen designs", "one sample"])
+def test_layout(kind: str, width: int) -> None:
+    chromium()
+    seen = layout(page_of(kind), width)
+    assert seen.texts > 40 and not seen.faults
