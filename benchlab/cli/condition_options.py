@@ -13,6 +13,13 @@ import click
 from benchlab.cli.options import Finite
 from benchlab.errors import UsageError
 
+model_option = click.option(
+    "--model",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="A model file, as `benchlab explain` writes it: its base and its effects, in place of the cell alone.",
+)
+
 OPTIONS = (
     click.option(
         "--material",
@@ -37,7 +44,7 @@ OPTIONS = (
 
 
 def condition_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Add OPTIONS; `command` is given `conditions` (pressures_MPa, cap_mm, blocked -> Conditions) and the other options."""
+    """Add OPTIONS; `command` is given `conditions` (pressures_MPa, cap_mm, blocked[, model] -> Conditions) and the other options."""
 
     @functools.wraps(command)
     def with_conditions(
@@ -51,7 +58,7 @@ def condition_options(command: Callable[..., Any]) -> Callable[..., Any]:
     ) -> Any:
         if jobs is not None and scheduler is not None:
             raise UsageError("--jobs and --scheduler are both given", hint="give one of them")
-        conditions = functools.partial(_conditions, material, lever_arm_mm, contact_area_mm2)
+        conditions = functools.partial(conditions_of, material, lever_arm_mm, contact_area_mm2)
         return command(*args, conditions=conditions, jobs=jobs or os.cpu_count() or 1, scheduler=scheduler, **options)
 
     for option in reversed(OPTIONS):
@@ -59,15 +66,16 @@ def condition_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return with_conditions
 
 
-def _conditions(
+def conditions_of(
     material: str | None,
     lever_arm_mm: float | None,
     contact_area_mm2: float | None,
     pressures_MPa: tuple[float, ...],
     cap_mm: float,
     blocked: bool,
+    model: Path | None = None,
 ) -> Any:
-    """Raises UsageError or InputError for a material that cannot be read, or a fixture that is none."""
+    """What all designs have in common. Raises UsageError or InputError for a material, a model or a fixture that is none, and for both."""
     from benchlab.io.layup_file import DEFAULT_LAYUP, read_layup
     from benchlab.simulation.actuator_response import Fixture
     from benchlab.workflows.simulated import Conditions
@@ -76,4 +84,11 @@ def _conditions(
         raise UsageError("--lever-arm-mm and --contact-area-mm2 are both given", hint="give one of them")
     given = {"lever_arm_mm": lever_arm_mm, "contact_area_mm2": contact_area_mm2}
     fixture = Fixture() if lever_arm_mm is None and contact_area_mm2 is None else Fixture(**given)
-    return Conditions(read_layup(material or DEFAULT_LAYUP), pressures_MPa, fixture, cap_mm, blocked)
+    if model is None:
+        return Conditions(read_layup(material or DEFAULT_LAYUP), pressures_MPa, fixture, cap_mm, blocked)
+    if material is not None:
+        raise UsageError("--model and --material are both given", hint="a model has its own material: give one of them")
+    from benchlab.workflows.model_curves import model_layup, open_model
+
+    opened = open_model(model)
+    return Conditions(model_layup(opened), pressures_MPa, fixture, cap_mm, blocked, opened)

@@ -11,10 +11,11 @@ from typing import Any
 import click
 
 from benchlab.actuator import ShellDesign
+from benchlab.cli.condition_options import conditions_of, model_option
 from benchlab.cli.design_options import design_options
 from benchlab.cli.options import Finite
 from benchlab.cli.ranges import Values
-from benchlab.errors import InputError, printable
+from benchlab.errors import InputError, UsageError, printable
 
 MOST_PRESSURES = 2000
 
@@ -64,6 +65,7 @@ class Pressures(Values):
     metavar="FILE|NAME",
     help="Layup: a file, or one that is shipped. [default: the shipped one that the result names]",
 )
+@model_option
 @click.option(
     "--pressure-MPa",
     "pressures",
@@ -94,10 +96,12 @@ class Pressures(Values):
 def simulate(
     design: ShellDesign,
     material: str | None,
+    model: Path | None,
     pressures: tuple[float, ...],
     lever_arm_mm: float | None,
     contact_area_mm2: float | None,
     cap_mm: float,
+    tip_force_at_deg: float | None,
     strict: bool,
     as_json: bool,
     **options: Any,
@@ -112,6 +116,9 @@ def simulate(
       NAME.png       the bent actuator, and its angle, volume and blocked force over pressure
       NAME.cell.png  the inflated cell and its sections
 
+    With --model, the curves are those of a model file's base with its effects, at rest after a slow first loading; NAME is then
+    the design's and the model's, and NAME.h5 has no states, NAME.cell.png is not drawn, and what a curve at rest cannot show is a warning.
+
     Blocked force is true for the fixture that is stated with it only: the moment of the actuator held straight at a lever arm, or
     the pressure on a contact area. Where there is no stable state at a pressure (burst), the curves end below it, and a
     warning names the limit pressure.
@@ -120,19 +127,22 @@ def simulate(
     Examples:
       benchlab simulate --tw-mm 3 --slw-mm 10
       benchlab simulate --design shell.yaml --material rubber.yaml --pressure-MPa 0:0.5:0.01 --cap-mm 15 --out results
+      benchlab simulate --tw-mm 3 --slw-mm 10 --model explained/model.yaml
       benchlab simulate --design tw9_slw10 --tip-force-at-deg 45 --contact-area-mm2 110 --json
     """
     from benchlab.cli.progress import progress
-    from benchlab.io.layup_file import DEFAULT_LAYUP, read_layup
-    from benchlab.simulation.actuator_response import Fixture
     from benchlab.workflows.simulate import simulate as run
-    from benchlab.workflows.simulated import Conditions
+    from benchlab.workflows.simulate_model import simulate_model
 
-    given = lever_arm_mm is not None or contact_area_mm2 is not None
-    fixture = Fixture(lever_arm_mm, contact_area_mm2) if given else Fixture()
-    conditions = Conditions(read_layup(material or DEFAULT_LAYUP), pressures, fixture, cap_mm)
+    conditions = conditions_of(material, lever_arm_mm, contact_area_mm2, pressures, cap_mm, True, model)
+    if model is not None and tip_force_at_deg is not None:
+        hint = "leave --tip-force-at-deg out, or simulate without --model"
+        raise UsageError("a model does not know the force of a tip that is held at an angle", hint=hint)
     with progress(design.name) as report:
-        found = run(design, conditions, progress=report, **options)
+        if model is not None:
+            found = simulate_model(design, conditions, **options)
+        else:
+            found = run(design, conditions, tip_force_at_deg=tip_force_at_deg, progress=report, **options)
     _tell(found)
     if as_json:
         click.echo(json.dumps(found, indent=2, allow_nan=False))
@@ -146,20 +156,29 @@ def _tell(found: dict[str, Any]) -> None:
     """The last point, warnings and files on standard error."""
     last = found["points"][-1]
     force = _or_unknown(last["blocked_force_N"])
+    tip = f"; {_or_unknown(last['straight_tip_force_N'])} at the tip" if "straight_tip_force_N" in last else ""
+    volume = "volume unknown" if last["volume_mL"] is None else f"{last['volume_mL']:.2f} mL"
     click.echo(
-        f"{found['design']['name']}, simulated with material {printable(found['material']['name'])}, at {last['pressure_MPa']:g} MPa: "
-        f"{last['angle_deg']:.2f} deg, {last['volume_mL']:.2f} mL, blocked force {force} ({found['fixture']['words']}; "
-        f"{_or_unknown(last['straight_tip_force_N'])} at the tip); "
+        f"{found['design']['name']}, simulated with {_with_what(found)}, at {last['pressure_MPa']:g} MPa: "
+        f"{last['angle_deg']:.2f} deg, {volume}, blocked force {force} ({found['fixture']['words']}{tip}); "
         f"{len(found['points'])} pressures in {found['seconds']:.1f} s",
         err=True,
     )
-    if found["tip_force_at_deg"] is not None:
+    if found.get("tip_force_at_deg") is not None:
         force = _or_unknown(last["tip_force_N"])
         click.echo(f"  tip held at {found['tip_force_at_deg']:g} deg, {last['pressure_MPa']:g} MPa: {force}", err=True)
     for warning in found["warnings"]:
         click.echo(f"  warning: {printable(warning)}", err=True)
     for path in found["outputs"]:
         click.echo(f"  wrote {printable(path)}", err=True)
+
+
+def _with_what(found: dict[str, Any]) -> str:
+    """Material, or model and what its base alone has."""
+    if "model" not in found:
+        return f"material {printable(found['material']['name'])}"
+    bare = found["points"][-1]["base_angle_deg"]
+    return f"model {printable(found['model']['file'])} (its base alone: {bare:.2f} deg)"
 
 
 def _or_unknown(force_N: float | None) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from benchlab.actuator import ShellDesign
-from benchlab.cli.condition_options import condition_options
+from benchlab.cli.condition_options import condition_options, model_option
 from benchlab.cli.options import Finite
 from benchlab.cli.ranges import Values
 from benchlab.errors import BatchError, printable
@@ -31,10 +31,18 @@ from benchlab.errors import BatchError, printable
 @click.option(
     "--blocked/--no-blocked", default=True, help="Hold each design straight too, for its blocked force. [default: on]"
 )
+@model_option
 @condition_options
 @click.option("--overwrite", is_flag=True, help="Simulate all again, and replace files that are not benchlab's.")
 def sweep(
-    conditions: Any, jobs: int, scheduler: str | None, out: Path, overwrite: bool, as_json: bool, **options: Any
+    conditions: Any,
+    model: Path | None,
+    jobs: int,
+    scheduler: str | None,
+    out: Path,
+    overwrite: bool,
+    as_json: bool,
+    **options: Any,
 ) -> int:
     """Simulate every combination of the dimensions given: START:END[:STEP] (step 1), a list as 1,5,10, or one value.
 
@@ -47,6 +55,8 @@ def sweep(
     Ctrl-C keeps what is done, marked partial. The same command again goes on where it ended: designs with the same dimensions,
     pressures, material and simulation code are not simulated twice. A design that bursts is a result; one that cannot be made or
     simulated makes the exit code 4.
+
+    --model takes the curves of a model file in place of those of the cell alone: at rest, loaded slowly for the first time.
 
     --scheduler sends the designs to the workers of a dask scheduler, which have 15 s to answer (extra `cluster`).
 
@@ -67,7 +77,7 @@ def sweep(
         try:
             found = run(
                 axes,
-                conditions(options["pressure_mpa"], options["cap_mm"], options["blocked"]),
+                conditions(options["pressure_mpa"], options["cap_mm"], options["blocked"], model),
                 out,
                 jobs=jobs,
                 scheduler=scheduler,

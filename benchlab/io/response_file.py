@@ -5,6 +5,7 @@
     /entry/states      NXcollection   fields (P, N, 6), k (P,), lam (P,): the cell, free to bend, at each pressure
     /entry/mesh        NXcollection   nodes_mm (N, 2), elements (E, 9) of the quarter cell
 
+States and mesh are those of a simulated cell; a file of a model's curves is without them.
 Both hold what was simulated, not measured; the HDF5 file says so in /entry/simulation.
 """
 
@@ -49,6 +50,7 @@ EXTRAS = {
     "max_film_stretch": ("", "largest principal stretch of the film"),
     "peak_film_strain": ("", "largest principal strain of the film, but for 1 % of its area"),
     "max_fabric_stress_MPa": ("MPa", "largest von Mises stress of fabric and strip (MPa)"),
+    "base_angle_deg": ("deg", "bending angle θ of the model's base alone (°)"),
 }
 """Unit and name of what the HDF5 file may hold beside them."""
 
@@ -74,7 +76,7 @@ class ResponseCurves:
 
 @dataclass(frozen=True)
 class ResponseFile:
-    """All that a response file holds. states: of the free cell, one a pressure; extras: curves of EXTRAS."""
+    """All that a response file holds. states: of the free cell, one a pressure, none of a model; extras: curves of EXTRAS."""
 
     curves: ResponseCurves
     extras: dict[str, FloatArray]
@@ -85,7 +87,7 @@ class ResponseFile:
 
 def write_response_file(
     path: Path,
-    response: ActuatorResponse,
+    response: ActuatorResponse | Mapping[str, FloatArray],
     *,
     extras: Mapping[str, FloatArray],
     design: Mapping[str, Any],
@@ -94,19 +96,21 @@ def write_response_file(
     provenance: Mapping[str, Any],
     warnings: Sequence[str],
 ) -> None:
-    """Write a response file whole or not at all. extras: (P,) under names of EXTRAS. InputError where the disk refuses."""
+    """Write a response file whole or not at all. response: of a cell, or curves under the names of CURVES alone. extras: (P,) under names
+    of EXTRAS. InputError where the disk refuses."""
     values = (design, material, simulation, provenance, list(warnings))
 
     def fill(entry: h5py.Group) -> None:
-        _write_curves(entry, {**response.columns(), **extras})
-        _write_states(entry, response)
+        _write_curves(entry, {**_columns(response), **extras})
+        if isinstance(response, ActuatorResponse):
+            _write_states(entry, response)
 
     write_nexus(path, SCHEMA, "response", dict(zip(_DOCUMENTS, values)), fill)
 
 
-def write_response_csv(path: Path, response: ActuatorResponse) -> None:
+def write_response_csv(path: Path, response: ActuatorResponse | Mapping[str, FloatArray]) -> None:
     """Write the curves as a table, whole or not at all: the columns of CURVES, empty cells where there is no value."""
-    columns = response.columns()
+    columns = _columns(response)
     with written_whole(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(columns)
@@ -127,6 +131,9 @@ def read_response_file(path: Path) -> ResponseFile:
         count = len(reader.numbers("/entry/response/pressure_MPa"))
         curves = {name: _column(reader, name, count) for name in CURVES}
         extras = {name: _column(reader, name, count) for name in EXTRAS if reader.find(f"/entry/response/{name}")}
+        if not reader.find("/entry/states"):
+            none = np.zeros((0, 2)), np.zeros((0, 9), dtype=np.int64)
+            return ResponseFile(ResponseCurves(**curves, about=about), extras, (), *none)
         nodes = reader.numbers("/entry/mesh/nodes_mm").astype(float)
         elements = reader.numbers("/entry/mesh/elements").astype(np.int64)
         fields = reader.numbers("/entry/states/fields", (count, len(nodes), FIELDS)).astype(float)
@@ -138,6 +145,10 @@ def read_response_file(path: Path) -> ResponseFile:
 def read_response_provenance(path: Path) -> dict[str, Any] | None:
     """The provenance of a response file alone; None where there is none that can be read."""
     return read_provenance_of(path, SCHEMA)
+
+
+def _columns(response: ActuatorResponse | Mapping[str, FloatArray]) -> Mapping[str, FloatArray]:
+    return response.columns() if isinstance(response, ActuatorResponse) else response
 
 
 def _write_curves(entry: h5py.Group, columns: Mapping[str, FloatArray]) -> None:

@@ -132,6 +132,7 @@ def _curve(path: Path) -> tuple[ResponseCurve, dict[str, Any]]:
     known = np.isfinite(curves.angle_deg)
     pressure, angle = curves.pressure_MPa[known], curves.angle_deg[known]
     volume, stretch = curves.volume_mL[known], curves.axial_stretch[known]
+    stretch = np.where(np.isfinite(stretch), stretch, 1.0)  # a model's curves are without it, and no effect needs it
     try:
         return ResponseCurve(pressure, angle, volume, stretch, source=path.name), curves.about.get("design", {})
     except InputError as error:

@@ -62,7 +62,7 @@ def simulate(
     what was found, as `--json` shows it. Pressures beyond a limit have no result; a warning names it.
     Raises UsageError, and InputError where the first pressure is beyond the limit; then nothing was written.
     """
-    outputs = SimulateOutputs(out, _checked_name(name or design.name), overwrite)
+    outputs = SimulateOutputs(out, checked_name(name or design.name), overwrite)
     if tip_force_at_deg is not None and not abs(tip_force_at_deg) <= LARGEST_TIP_ANGLE_DEG:
         raise UsageError(
             f"--tip-force-at-deg is {tip_force_at_deg:g}", hint=f"give an angle up to {LARGEST_TIP_ANGLE_DEG:g} degrees"
@@ -91,7 +91,8 @@ def simulate(
     return {**about, "points": rows, "outputs": [str(path) for path in outputs.paths()]}
 
 
-def _checked_name(name: str) -> str:
+def checked_name(name: str) -> str:
+    """The name, if files can have it. Raises UsageError."""
     if name != Path(name).name or name.startswith(".") or not name.isprintable() or len(name.encode()) > LONGEST_NAME:
         raise UsageError(
             f"{name[:60]!r} is no name for files",

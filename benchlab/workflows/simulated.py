@@ -8,36 +8,45 @@ import json
 from dataclasses import asdict, dataclass
 from importlib.resources import files
 from importlib.resources.abc import Traversable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
 import benchlab
 from benchlab.actuator import ShellDesign
-from benchlab.errors import InputError
+from benchlab.errors import InputError, UsageError
 from benchlab.io.layup_file import layup_document
 from benchlab.simulation.actuator_response import Fixture, actuator_response
 from benchlab.simulation.film_strain import peak_film_strain
 from benchlab.simulation.layup import Layup
 from benchlab.simulation.response import check_pressures
 
+if TYPE_CHECKING:
+    from benchlab.workflows.model_curves import Model
+
 
 @dataclass(frozen=True)
 class Conditions:
-    """What is the same for all designs. blocked: they are also held straight. Raises UsageError for impossible pressures."""
+    """What is the same for all designs. blocked: they are also held straight. model: whose curves are wanted, instead of the cell's alone;
+    its layup is `layup`. Raises UsageError for impossible pressures, and for caps beside a model."""
 
     layup: Layup
     pressures_MPa: tuple[float, ...]
     fixture: Fixture
     cap_mm: float = 0.0
     blocked: bool = True
+    model: Model | None = None
 
     def __post_init__(self) -> None:
         check_pressures(self.pressures_MPa)
+        if self.model is not None and self.cap_mm:
+            hint = "put end_caps into the model, or leave --cap-mm out"
+            raise UsageError("--cap-mm and --model are both given, and a model has its own ends", hint=hint)
 
     def as_json(self) -> dict[str, Any]:
         return {
+            **({} if self.model is None else {"model": self.model.as_json()}),
             "material": layup_document(self.layup),
             "pressures_MPa": list(self.pressures_MPa),
             "fixture": asdict(self.fixture),
@@ -47,7 +56,8 @@ class Conditions:
 
     def key(self, design: ShellDesign) -> str:
         """One number for all that the result follows from: design, conditions, and the code that computes it."""
-        whole = json.dumps([asdict(design), self.as_json(), code_digest()], sort_keys=True)
+        rooms = ("simulation",) if self.model is None else ("simulation", "discrepancy")
+        whole = json.dumps([asdict(design), self.as_json(), code_digest(*rooms)], sort_keys=True)
         return hashlib.sha256(whole.encode()).hexdigest()
 
 
@@ -57,6 +67,10 @@ def simulate_design(design: ShellDesign, conditions: Conditions) -> dict[str, An
     `columns`: (P,) arrays under the names of files, NaN where there is no stable state; `limit_pressure_MPa`; `seconds`.
     Raises InputError where no pressure has a stable state.
     """
+    if conditions.model is not None:
+        from benchlab.workflows.simulate_model import model_columns
+
+        return model_columns(design, conditions)
     with threadpool_limits(1):
         found = actuator_response(
             design,
@@ -82,11 +96,12 @@ def simulate_design(design: ShellDesign, conditions: Conditions) -> dict[str, An
 
 
 @functools.cache
-def code_digest() -> str:
-    """SHA-256 of the simulation's own source, so that a result of other code is not taken for one of this."""
+def code_digest(*rooms: str) -> str:
+    """SHA-256 of the simulation's own source, or that of `rooms`, so that a result of other code is not taken for one of this."""
     digest = hashlib.sha256(benchlab.__version__.encode())
-    for name, content in sorted(_sources(files("benchlab") / "simulation")):
-        digest.update(f"{name}\0".encode() + content)
+    for room in rooms or ("simulation",):
+        for name, content in sorted(_sources(files("benchlab") / room)):
+            digest.update(f"{name}\0".encode() + content)
     return digest.hexdigest()
 
 
