@@ -37,8 +37,8 @@ def read_design(text: str | Path) -> ShellDesign:
     A name goes before a file that is called the same; `./tw3_slw10` is the file.
     Raises UsageError where there is neither, or a named design is impossible; InputError for a file that is refused.
     """
-    if isinstance(text, str) and (name := _NAME.fullmatch(text)):
-        return ShellDesign(window_width_mm=float(name[1]), strip_width_mm=float(name[2]))
+    if isinstance(text, str) and (design := design_named(text)):
+        return design
     path = Path(text)
     if not path.exists():
         raise UsageError(
@@ -51,6 +51,12 @@ def read_design(text: str | Path) -> ShellDesign:
         return ShellDesign(**document.model_dump())
     except UsageError as error:
         raise InputError(error.what, file=path, hint=error.hint) from None
+
+
+def design_named(text: str) -> ShellDesign | None:
+    """The design of a name as `tw3_slw10`, None for another text. Raises UsageError where it is impossible."""
+    name = _NAME.fullmatch(text)
+    return ShellDesign(window_width_mm=float(name[1]), strip_width_mm=float(name[2])) if name else None
 
 
 def write_design(path: Path, design: ShellDesign) -> None:

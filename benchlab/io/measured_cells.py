@@ -37,7 +37,7 @@ Row = tuple[int, list[str]]
 
 @dataclass(frozen=True)
 class Cells:
-    """Rows of a table. frame: a column a key of `columns`, numbers or texts (as categories), as in the file; `line`: where a row is."""
+    """Rows of a table. frame: a column a key of `columns`, numbers or texts (as categories), as in the file; its index is the line."""
 
     frame: pandas.DataFrame
     columns: Columns
@@ -83,7 +83,7 @@ def _read_strictly(table: Table, columns: Columns, rows: Iterable[Row]) -> Cells
     data: dict[str, Any] = {key: np.asarray(values) for key, values in numbers.items()}
     data |= {key: pandas.Categorical(found) for key, found in texts.items()}
     notes = [*table.warnings, *_notes(table, reader, len(lines) * len(numbers))]
-    return Cells(pandas.DataFrame({**data, "line": np.asarray(lines)}), columns, tuple(notes))
+    return Cells(pandas.DataFrame(data, index=np.asarray(lines)), columns, tuple(notes))
 
 
 def _notes(table: Table, reader: NumberReader, cells: int) -> list[str]:
@@ -141,7 +141,7 @@ def _read_at_once(table: Table, columns: Columns, first: Sequence[Row]) -> Cells
         if not is_text(column) and np.isinf(values.to_numpy()).any():
             return None
         found[key] = _stripped(values) if is_text(column) else values.to_numpy()
-    whole = pandas.DataFrame({**found, "line": np.arange(start, start + len(frame))})
+    whole = pandas.DataFrame(found, index=np.arange(start, start + len(frame)))
     empty = [whole[key] == "" if is_text(column) else whole[key].isna() for key, column in columns.read.items()]
     blank = np.logical_and.reduce(empty).any()
     return None if blank else Cells(whole, columns, sample.warnings)

@@ -81,6 +81,8 @@ def find_columns(
     chosen = {column.key: column for column in _named(header, source, columns or {}, against)}
     taken = {column.index for column in chosen.values()}
     for name in against:
+        if (meaning := meaning_of(name)) is not None and (meaning.unit or not meaning.kind):
+            raise UsageError(f"--against: {printable(name)!r} is read anyway", hint="leave it out of --against")
         if name not in chosen:
             index = _index(header, source, name, "--against")
             chosen[name] = Column(name, index, header[index], None)

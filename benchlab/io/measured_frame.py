@@ -41,7 +41,7 @@ class RunName:
 @dataclass(frozen=True)
 class Rows:
     """Rows of one source. frame: design, sample, run (categories), numbers by the names of benchlab (`angle_deg`, `angle_deg sd`), columns
-    of `against`, `line` and `source`. word: what a line is called. x: the column of the pressure, or of what takes its place."""
+    of `against`; its index is the line. word: what a line is called. x: the column of the pressure, or of what takes its place."""
 
     frame: pandas.DataFrame
     source: str
@@ -52,18 +52,16 @@ class Rows:
     warnings: list[str] = field(default_factory=list)
 
     def refused(self, what: str, at: int, hint: str) -> InputError:
-        return InputError(what, file=self.source, where=f"{self.word} {self.frame['line'].iloc[at]}", hint=hint)
+        return InputError(what, file=self.source, where=f"{self.word} {self.frame.index[at]}", hint=hint)
 
 
-def rows_of(cells: Cells, source: str, word: str, against: Sequence[str], name: RunName) -> Rows:
-    """The rows of a table. Raises InputError, with the line, for what no row may say."""
+def rows_of(cells: Cells, source: str, word: str, against: Sequence[str], name: RunName, samples: bool) -> Rows:
+    """The rows of a table. samples: whether it matters of which one a row is. Raises InputError, with the line, for what no row may say."""
     warnings = list(cells.warnings)
     frame = _converted(cells)
-    frame["source"] = source
     _settle_against(frame, against)
-    warnings += _left(cells.columns)
     x = _x_of(cells.columns, frame, source, against, warnings)
-    warnings += _settle_names(frame, source, word, name, cells.columns.of_means)
+    warnings += _settle_names(frame, source, word, name, samples)
     simulated = "origin" in frame and any("simulated" in str(text) for text in frame["origin"].unique())
     rows = Rows(frame, source, word, x, tuple(against), simulated, warnings)
     _check_names(rows)
@@ -96,12 +94,17 @@ def _settle_against(frame: pandas.DataFrame, against: Sequence[str]) -> None:
             frame[name] = np.append(values, np.nan)[texts.cat.codes]
 
 
-def _left(columns: Columns) -> list[str]:
+def left_words(columns: Columns) -> list[str]:
+    """What is to be told of columns that were not read."""
+    from benchlab.discrepancy.effects.catalogue import built_in
+
     left = [printable(label) for label in columns.left]
     if not left:
         return []
+    told = [f"column {label} is called like an effect, and says nothing of it" for label in left if label in built_in()]
     listed = ", ".join(left[:8]) + (f" and {len(left) - 8} more" if len(left) > 8 else "")
-    return [f"columns not read: {listed}; name with --against what may matter, with --columns what is called otherwise"]
+    hint = "--columns says what is called otherwise, --against what may matter"
+    return [*told, f"columns not read: {listed}; {hint}"]
 
 
 def _x_of(columns: Columns, frame: pandas.DataFrame, source: str, against: Sequence[str], warnings: list[str]) -> str:
@@ -120,7 +123,7 @@ def _x_of(columns: Columns, frame: pandas.DataFrame, source: str, against: Seque
     raise InputError(what, file=source, hint=hint)
 
 
-def _settle_names(frame: pandas.DataFrame, source: str, word: str, name: RunName, of_means: bool) -> list[str]:
+def _settle_names(frame: pandas.DataFrame, source: str, word: str, name: RunName, samples: bool) -> list[str]:
     """Design, sample and run of every row, of columns, of the file's name, or else one for all; the last is told, unless samples have no
     part in it."""
     import pandas
@@ -132,7 +135,7 @@ def _settle_names(frame: pandas.DataFrame, source: str, word: str, name: RunName
         if each not in frame:
             given = getattr(name, each)
             frame[each] = pandas.Categorical([given or UNNAMED[each]]).repeat(len(frame))
-            if not given and not (of_means and each == "sample"):
+            if not given and (samples or each != "sample"):
                 told.append(each)
     if "run" not in frame:
         frame["run"] = pandas.Categorical([name.run or "r1"]).repeat(len(frame))
@@ -148,7 +151,7 @@ def _design_names(frame: pandas.DataFrame, source: str, word: str) -> list[str]:
             try:
                 named[pair] = ShellDesign(strip_width_mm=pair[1], window_width_mm=pair[0]).name
             except UsageError as error:
-                where = f"{word} {frame['line'].iloc[at]}"
+                where = f"{word} {frame.index[at]}"
                 raise InputError(error.what, file=source, where=where, hint=error.hint) from None
     return [named[pair] for pair in zip(frame["tw_mm"], frame["slw_mm"])]
 
@@ -202,7 +205,7 @@ def without_gaps(rows: Rows) -> Rows:
         if key in frame:
             missing = ~np.isfinite(frame[key].to_numpy(dtype=float))
             if missing.any():
-                first = frame["line"].to_numpy()[missing].min()
+                first = frame.index[missing].min()
                 warnings.append(
                     f"{counted(int(missing.sum()), 'row')} without {key} left out, the first in {rows.word} {first}"
                 )
@@ -213,7 +216,7 @@ def without_gaps(rows: Rows) -> Rows:
     for key in values_in(frame):
         missing = ~np.isfinite(frame[key].to_numpy())
         if missing.any():
-            first = frame["line"].to_numpy()[missing].min()
+            first = frame.index[missing].min()
             warnings.append(f"{key} is missing in {missing.sum()} of {len(frame)} rows, the first {rows.word} {first}")
     return Rows(frame, rows.source, rows.word, rows.x, rows.against, rows.simulated, warnings)
 

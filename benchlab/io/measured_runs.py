@@ -154,7 +154,7 @@ def _one(rows: Rows, key: str, name: tuple[str, str, str]) -> float | None:
         return None
     other = known[values[known] != values[known[0]]]
     if len(other):
-        first = f"{values[known[0]]:g} in {rows.word} {rows.frame['line'].iloc[known[0]]}"
+        first = f"{values[known[0]]:g} in {rows.word} {rows.frame.index[known[0]]}"
         what = f"{key} of run {printable(name[2])} is {values[other[0]]:g} here and {first}"
         raise rows.refused(
             what, int(other[0]), "it has one value a run: is a column `run` missing, or a run named twice?"
@@ -179,7 +179,7 @@ def _each_time_once(rows: Rows, name: tuple[str, str, str]) -> Rows:
     frame = rows.frame
     if "time_s" not in frame or not (np.diff(frame["time_s"].to_numpy()) == 0).any():
         return rows
-    measured = [key for key in frame if key not in ("line", "source", *NAMES)]
+    measured = [key for key in frame if key not in NAMES]
     single = frame.drop_duplicates(subset=measured)
     of = f"run {printable(name[2])} of {printable(name[0])} {printable(name[1])}"
     if len(single) < len(frame):
@@ -204,7 +204,7 @@ def _check_clock(rows: Rows, frame: pandas.DataFrame, again: np.ndarray, of: str
         if wide.any() and not at:
             at, place = True, int(again[int(np.argmax(wide))])
     if at:
-        lines = sorted(frame["line"].iloc[[place, place + 1]].tolist())
+        lines = sorted(frame.index[[place, place + 1]].tolist())
         what = f"{of} has two rows with other values at {frame['time_s'].iloc[place]:g} s, {rows.word}s {lines[0]} and {lines[1]}"
         hint = "are two runs called alike, or does time begin again in each cycle? name each run, and let time go on"
         raise InputError(what, file=rows.source, where=f"{rows.word} {lines[1]}", hint=hint)
@@ -218,7 +218,7 @@ def _averaged(frame: pandas.DataFrame) -> pandas.DataFrame:
 
 def _back_in_time(rows: Rows) -> list[str]:
     """Where, within a run, time goes back from a row of the file to the next, if that is rare."""
-    key, line = _key(rows.frame), rows.frame["line"].to_numpy()
+    key, line = _key(rows.frame), rows.frame.index.to_numpy()
     order = np.lexsort([line, key])
     time = rows.frame["time_s"].to_numpy()[order]
     back = np.flatnonzero((np.diff(key[order]) == 0) & (np.diff(time) < 0))

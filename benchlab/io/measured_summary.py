@@ -99,6 +99,6 @@ def _check_once(rows: Rows) -> None:
     if again.any():
         at = int(np.argmax(again))
         row = frame.iloc[at]
-        first = frame[(frame["design"] == row["design"]) & (frame[rows.x] == row[rows.x])]["line"].iloc[0]
+        first = frame[(frame["design"] == row["design"]) & (frame[rows.x] == row[rows.x])].index[0]
         what = f"{printable(row['design'])} at {row[rows.x]:g} stands twice, first in {rows.word} {first}"
         raise rows.refused(what, at, "give one row a design and pressure")

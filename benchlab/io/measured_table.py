@@ -21,7 +21,7 @@ from benchlab.discrepancy.measured import QUANTITIES, Measured, Summary
 from benchlab.errors import InputError, UsageError, printable
 from benchlab.io.measured_cells import Cells, is_text, read_cells
 from benchlab.io.measured_columns import find_columns
-from benchlab.io.measured_frame import Rows, RunName, rows_of, values_in
+from benchlab.io.measured_frame import Rows, RunName, left_words, rows_of, values_in
 from benchlab.io.measured_runs import measured_of_runs, runs_of
 from benchlab.io.measured_summary import summary_of
 
@@ -64,7 +64,7 @@ def measured_of_frame(
     >>> measured_of_frame(table, "a test").runs[0].pressure_MPa.tolist()
     [0.0, 0.35]
     """
-    header = [str(label) for label in frame.columns]
+    header = [str(label).strip() for label in frame.columns]
     found = find_columns(header, source, columns, against)
     data: dict[str, Any] = {}
     for key, column in found.read.items():
@@ -72,14 +72,16 @@ def measured_of_frame(
         data[key] = _texts(values) if is_text(column) else _numbers(values, source, column.label)
     import pandas
 
-    cells = Cells(pandas.DataFrame({**data, "line": np.arange(1, len(frame) + 1)}), found, ())
+    cells = Cells(pandas.DataFrame(data, index=np.arange(1, len(frame) + 1)), found, ())
     return _together([(cells, _rows(cells, source, "row", against, RunName()))], source)
 
 
 def _rows(cells: Cells, source: str, word: str, against: Sequence[str], name: RunName) -> Rows:
     if cells.frame.empty:
         raise InputError("no data rows", file=source, hint="the table holds only a header")
-    return rows_of(cells, source, word, against, name)
+    rows = rows_of(cells, source, word, against, name, samples=not cells.columns.of_means)
+    rows.warnings.extend(left_words(cells.columns))
+    return rows
 
 
 def _texts(values: pandas.Series) -> pandas.Categorical:

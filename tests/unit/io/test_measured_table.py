@@ -262,9 +262,11 @@ def test_units_are_not_guessed(tmp_path: Path, names: dict, words: str, hint: st
 
 
 def test_other_columns_are_told(tmp_path: Path) -> None:
-    found = read(tmp_path, tidy().assign(gravity=1.0, humidity_pct=40))
+    found = read(tmp_path, tidy().assign(altitude=1.0, humidity_pct=40))
     (words,) = found.warnings
-    assert words.startswith("columns not read: gravity, humidity_pct; name with --against")
+    assert words.startswith(
+        "columns not read: altitude, humidity_pct; --columns says what is called otherwise, --against"
+    )
     assert found.runs[0].against == {}
 
 
@@ -428,3 +430,13 @@ def test_a_table_of_means_beside_runs_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="a table of means beside tables of runs"):
         read_measured([means, write(tmp_path, tidy())])
     assert isinstance(read_measured([means]), Summary)
+
+
+def test_a_column_called_like_an_effect_says_nothing(tmp_path: Path) -> None:
+    table = tidy().assign(friction=0.2, temperature=21.5)
+    found = read(tmp_path, table.drop(columns="temperature"))
+    assert "column friction is called like an effect, and says nothing of it" in found.warnings
+    assert "no unit in the name of column 'temperature'" in refusal(tmp_path, table).what
+    run = read(tmp_path, table, against=["friction", "temperature"]).runs[0]
+    assert run.against["friction"][0] == 0.2 and run.temperature_C is None  # type: ignore[comparison-overlap]
+    assert "'angle_deg' is read anyway" in refusal(tmp_path, table, against=["angle_deg"]).what
