@@ -38,6 +38,11 @@ class Case:
     separated_by: str = ""
     how: str = ""
 
+    @property
+    def truth(self) -> frozenset[str]:
+        """What is to be named: nothing where nothing is hidden, or nothing that has a name."""
+        return frozenset(self.names) if self.kind in {"single", "two", "pair"} else frozenset()
+
     def study(self) -> Study:
         return study(self.seed, self.names, self.strengths, self.layout, self.forms)
 

@@ -15,7 +15,10 @@ from tests.blind.generator.station import FloatArray, Station
 
 @dataclass(frozen=True)
 class FrameCompliance(Hidden):
-    """size: mm/N. The frame gives F·size at the lever arm, so the actuator turns by F·size/arm of its free angle over `share` of its length."""
+    """size: mm/N. The frame gives F·size at the lever arm, so the actuator turns by F·size/arm of its free angle.
+
+    share: of the length that is free to turn.
+    """
 
     share: float
     name: ClassVar[str] = "frame_compliance"

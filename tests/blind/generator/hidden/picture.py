@@ -12,7 +12,7 @@ MARKERS = 11
 GRID_deg = np.linspace(-40.0, 240.0, 141)
 
 Place = Callable[[FloatArray, float], FloatArray]
-"""Marker positions in the plane of bending (A, M, 2) as (towards the bending side, along the base's axis), mm, for angles (A,) in rad and a length."""
+"""Markers in the plane of bending (A, M, 2), mm, as (towards the bending side, along the base's axis), for angles (A,) in rad."""
 Look = Callable[[FloatArray], FloatArray]
 """From points in space (..., 3), mm, third towards the camera, to points of the picture (..., 2), in mm of its scale."""
 
@@ -34,7 +34,8 @@ def straight_on(points: FloatArray) -> FloatArray:
 def pinhole(distance_mm: float, nearer_mm: float = 0.0, turned_rad: float = 0.0, about: int = 1) -> Look:
     """A camera at `distance_mm` from the plane in which the scale was taken.
 
-    nearer_mm: the actuator's plane is so much nearer. turned_rad: it is turned about its base's axis (about = 1) or about the direction across (0).
+    nearer_mm: the actuator's plane is so much nearer. turned_rad: it is turned about its base's axis (about = 1) or about the
+    direction across (0).
     """
 
     def look(points: FloatArray) -> FloatArray:

@@ -25,7 +25,7 @@ class WarmUpDrift(Hidden):
 
     @classmethod
     def draw(cls, rng: np.random.Generator) -> Self:
-        return cls(cls.typical, rng.uniform(900, 4000), int(rng.choice([-1, 1])))
+        return cls(cls.typical, rng.uniform(3000, 9000), int(rng.choice([-1, 1])))
 
     def seen(self, angle: FloatArray, at: Station) -> FloatArray:
         return angle + self.sign * self.size * (1 - np.exp(-at.session_s / self.settle_s))
