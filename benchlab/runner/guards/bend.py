@@ -27,18 +27,18 @@ class BendGuard:
         self.limits, self.expected_deg = limits, expected_deg
         self.lag = Lag(limits.lag_s)
         self.idle, self.bent, self.resting = Timer(), Timer(), Timer()
-        self.rest_deg, self.peak_deg = math.nan, 0.0
+        self.rest_deg, self.peak_deg, self.expected_at_rest_deg = math.nan, 0.0, 0.0
         self.vented_at_s = math.nan
 
     def check(self, tick: Tick) -> Cause | None:
         angle, time_s = tick.angle_deg, tick.time_s
         if math.isnan(angle):
             return None
-        if math.isnan(self.rest_deg):
-            self.rest_deg = angle
         lagging = self.lag.after(time_s, tick.command_MPa)
         surely = min(lagging, tick.command_MPa)
-        moved, expected = angle - self.rest_deg, self.expected_deg(surely)
+        if math.isnan(self.rest_deg):
+            self.rest_deg, self.expected_at_rest_deg = angle, self.expected_deg(surely)
+        moved, expected = angle - self.rest_deg, self.expected_deg(surely) - self.expected_at_rest_deg
         self.peak_deg = max(self.peak_deg, moved)
         share = 0.0 if math.isinf(self.limits.bend_share) else self.limits.bend_share
         idle = expected >= self.WORTH_DEG and moved < share * expected
@@ -54,7 +54,7 @@ class BendGuard:
             look = "exhaust blocked, tube kinked or a valve shut, or it empties slowly (--guard lag_s=..., bend_s=...)"
             return Cause("not following", f"{words}: {look}")
         if self.resting.count(time_s, rest and not bent) >= self.limits.bend_s and rest:
-            self.rest_deg, self.peak_deg = angle, 0.0
+            self.rest_deg, self.peak_deg, self.expected_at_rest_deg = angle, 0.0, self.expected_deg(surely)
         return None
 
     def _idle(self, tick: Tick, moved: float, expected: float) -> Cause:

@@ -325,3 +325,17 @@ def test_the_guards_name_the_option_that_changes_them() -> None:
         and "regulator slower than 0.5 s" in run(lagging(3.0), STEPS).cause.words
     )
     assert "--guard bend_s=off" in run(unbending(0), bench=NO_MONITOR).cause.words
+
+
+def test_a_slow_ramp_of_a_steep_actuator_is_judged_by_what_it_bends_from_where_it_rested() -> None:
+    """It has bent by 18° before the pressure is one that counts as asked for."""
+
+    def steep(n: int, fields: Fields) -> None:
+        fields["flex_V"] = 1.0 + (fields["flex_V"] - 1.0) * 3
+
+    slow = np.linspace(0.0, 0.05, 1001)
+    along = guards_of(NO_MONITOR, 100.0, expected_deg=lambda p: 3 * DEG_PER_MPA * p)
+    assert run(steep, slow, bench=NO_MONITOR, guards=along).reason == "completed"
+    along = guards_of(NO_MONITOR, 100.0, expected_deg=lambda p: 3 * DEG_PER_MPA * p)
+    held = setting("flex_V", lambda n, volts: 1.0 + 1e-3 * math.sin(n))
+    assert run(held, slow, bench=NO_MONITOR, guards=along).reason == "not following"
