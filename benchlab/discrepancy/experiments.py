@@ -11,6 +11,9 @@ from benchlab.discrepancy.experiment import BenchLimits, Experiment, Hold, Leg, 
 SLOW_S, MIDDLE_S, FAST_S = 50.0, 5.0, 0.5
 """From 0 to the largest pressure: two decades of rate."""
 
+DEFAULT_SLOW_S = 20.0
+"""The same of the slow cycle with which an investigation begins, on every sample."""
+
 SHORT, LONG = 0.5, 2.0
 """Lengths of new samples, of those measured."""
 
@@ -37,7 +40,8 @@ def default_experiment(limits: BenchLimits) -> Experiment:
     >>> default_experiment(BenchLimits()).what
     'loading and unloading at two rates, a hold, three cycles'
     """
-    top, slow, middle, fast = _rates(limits)
+    top, _, middle, fast = _rates(limits)
+    slow = round(top / DEFAULT_SLOW_S, 4)
     legs = (
         *(Triangle(0, top, slow), Hold(10), Triangle(0, top, fast), Hold(10)),
         *(Ramp(top, fast), Hold(30), Ramp(0, fast), Hold(10), Triangle(0, top, middle, 3)),
