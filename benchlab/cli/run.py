@@ -31,6 +31,12 @@ BY_HAND = "close the supply and open the relief valve by hand"
     "--curve", type=click.Path(path_type=Path), help="Or that curve from a file, as `benchlab simulate` writes it."
 )
 @click.option(
+    "--model",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Or by a model file of `benchlab explain`, for --design or tw3_slw10; a twin then has the model's effects, and no others.",
+)
+@click.option(
     "--control", type=click.Path(path_type=Path), help="Gains of closed-loop steps, in place of the protocol's."
 )
 @click.option(
@@ -83,6 +89,7 @@ def run(protocol: str, dry_run: bool, quiet: bool, as_json: bool, **options: Any
     \b
     Examples:
       benchlab run linear_ramp --fast --out results
+      benchlab run linear_ramp --fast --model explained/model.yaml --design tw9_slw10 --out results
       benchlab run mine.yaml --bench serial:/dev/ttyUSB0 --calibration bench.yaml --dry-run
       benchlab run mine.yaml --bench serial:/dev/ttyUSB0 --calibration bench.yaml --out results --guard follow_MPa=0.02
     """

@@ -2,6 +2,8 @@
 
     curve: tw9_slw10.h5          of `benchlab simulate`, beside this file, or tw3_slw10, the shipped one, by name; where it is left out the
                                  shipped one too, or that of `--design`
+    model: model.yaml            of `benchlab explain`, in place of `curve`, beside this file: the curve of `design` with the model's
+                                 structure, and its effects in place of those of the twin that comes with benchlab
     seed: 7
     effects:
       friction: {half_width_deg_per_MPa: 6}     other parameters keep their typical values
@@ -18,6 +20,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Mapping
 from importlib.resources import as_file, files
 from pathlib import Path
 from typing import Annotated, Any
@@ -25,7 +28,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BeforeValidator, Field, create_model
 
-from benchlab.errors import InputError
+from benchlab.errors import InputError, UsageError
 from benchlab.io.response_file import read_response_curves
 from benchlab.io.yaml_file import Document, read_document
 from benchlab.twin.curve import ResponseCurve
@@ -74,6 +77,7 @@ class _Camera(Document):
 
 class _Twin(Document):
     curve: str | None = None
+    model: str | None = None
     design: str | None = None
     length_mm: float | None = Field(default=None, ge=1, le=10_000)
     seed: int = Field(default=1, ge=0, lt=2**63)
@@ -82,21 +86,44 @@ class _Twin(Document):
     camera: _Camera = _Camera()
 
 
-def read_twin(path: Path | None) -> TwinSettings:
+@dataclasses.dataclass(frozen=True)
+class NamedModel:
+    """The model that a twin file rests on: path of its file, and name or file of the design, None where that is not told."""
+
+    path: Path
+    design: str | None
+
+
+def named_model(path: Path) -> NamedModel | None:
+    """The model that a twin file names; None where it names none. Raises UsageError and InputError as `read_twin`."""
+    if path.suffix.lower() in CURVE_SUFFIXES:
+        return None
+    found = read_document(path, _Twin)
+    return None if found.model is None else NamedModel(path.parent / found.model, found.design)
+
+
+def read_twin(path: Path | None, start: TwinSettings | None = None) -> TwinSettings:
     """The twin of a file, or where None the one that comes with benchlab: tw 3 mm, slw 10 mm, typical effects, seed 1.
 
-    A file of `benchlab simulate` (.h5, .csv) is that twin with another curve.
+    A file of `benchlab simulate` (.h5, .csv) is that twin with another curve. start: of a model, whose curve and effects take the place
+    of those that come with benchlab; then the file has no curve.
     Raises UsageError and InputError, with the line of everything that is wrong.
 
     >>> list(read_twin(None).effects)[:3]
     ['dac_steps', 'regulator_lag', 'line_resistance']
     """
     if path is None:
-        return TwinSettings(shipped_curve(), design=SHIPPED_CURVE)
+        return start or TwinSettings(shipped_curve(), design=SHIPPED_CURVE)
     if path.suffix.lower() in CURVE_SUFFIXES:
+        if start is not None:
+            raise UsageError("is a curve, and a model has its own", file=path, hint="leave the file or the model out")
         curve, told = _curve(path)
         return TwinSettings(curve, design=path.stem, length_mm=told.get("length_mm", LENGTH_MM), own_curve=True)
     found = read_document(path, _Twin)
+    if start is not None:
+        return _of_model(path, found, start)
+    if found.model is not None:
+        raise InputError("rests on a model, which this command does not read", file=path, hint="use benchlab run")
     if found.curve in (None, SHIPPED_CURVE):
         curve, told = shipped_curve(), {"length_mm": LENGTH_MM}
     else:
@@ -104,7 +131,7 @@ def read_twin(path: Path | None) -> TwinSettings:
     try:
         return TwinSettings(
             curve=curve,
-            effects=_effects(found),
+            effects=_effects(found, default_effects()),
             seed=found.seed,
             design=found.design or (SHIPPED_CURVE if found.curve is None else Path(found.curve).stem),
             length_mm=_length_mm(found.length_mm, told.get("length_mm")),
@@ -139,8 +166,26 @@ def _curve(path: Path) -> tuple[ResponseCurve, dict[str, Any]]:
         raise InputError(error.what, file=path, hint=error.hint) from None
 
 
-def _effects(found: Any) -> dict[str, Effect]:
-    on = dict(default_effects())
+def _of_model(path: Path, found: Any, start: TwinSettings) -> TwinSettings:
+    """The twin of a model with what a file says beside it."""
+    if found.curve is not None:
+        hint = "leave `curve` or the model out"
+        raise InputError("gives a curve, and a model has its own", file=path, where="curve", hint=hint)
+    try:
+        return dataclasses.replace(
+            start,
+            effects=_effects(found, start.effects),
+            seed=found.seed,
+            length_mm=_length_mm(found.length_mm, start.length_mm),
+            camera=Camera(**found.camera.model_dump()),
+        )
+    except InputError as error:
+        raise InputError(error.what, file=path, where=error.where, hint=error.hint) from None
+
+
+def _effects(found: Any, otherwise: Mapping[str, Effect]) -> dict[str, Effect]:
+    """Those that the file names, as it says, and the others as they are otherwise."""
+    on = dict(otherwise)
     for part in (found.effects, found.faults):
         for name in part.model_fields_set:
             given = getattr(part, name)

@@ -86,7 +86,7 @@ def open_model(path: Path) -> Model:
 
 def model_provenance(model: Model) -> dict[str, Any]:
     """Which model a result was made with: its name and SHA-256."""
-    return {"model": {"file": model.path.name, "sha256": sha256(model.path)}}
+    return {"file": model.path.name, "sha256": sha256(model.path)}
 
 
 def model_layup(model: Model) -> Layup:

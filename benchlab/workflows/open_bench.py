@@ -5,12 +5,17 @@ from __future__ import annotations
 import datetime
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from benchlab.actuator import ShellDesign
 from benchlab.bench import Bench
 from benchlab.devices.interface import Device
 from benchlab.errors import InputError, UsageError
 from benchlab.twin.curve import ResponseCurve
 from benchlab.twin.settings import TwinSettings
+
+if TYPE_CHECKING:
+    from benchlab.workflows.model_twin import ModelTwin
 
 NEEDS = {"twin": None, "serial": "PORT", "emulated": None, "replay": "FILE"}
 """What must follow the kind of a bench after a colon. A twin may be followed by a file."""
@@ -53,8 +58,11 @@ def spec_of(text: str) -> Spec:
     return Spec(kind, where)
 
 
-def twin_of(spec: Spec, seed: int | None = None, actuator: Actuator | None = None) -> TwinSettings | None:
+def twin_of(
+    spec: Spec, seed: int | None = None, actuator: Actuator | None = None, model: TwinSettings | None = None
+) -> TwinSettings | None:
     """What a twin is made from; None for another bench. seed: in place of its file's. actuator: where its file has no curve of its own.
+    model: the twin of a model (`model_of`), that of the one that its file names where None.
 
     Raises UsageError and InputError as `read_twin`.
     """
@@ -62,12 +70,39 @@ def twin_of(spec: Spec, seed: int | None = None, actuator: Actuator | None = Non
         return None
     from benchlab.io.twin_file import read_twin
 
-    settings = read_twin(Path(spec.where) if spec.where else None)
+    path = Path(spec.where) if spec.where else None
+    if model is None and (found := model_of(spec)) is not None:
+        model = found.settings
+    settings = read_twin(path, model)
     if actuator is not None and not settings.own_curve:
         settings = replace(settings, curve=actuator.curve, design=actuator.name)
         if actuator.length_mm is not None:
             settings = replace(settings, length_mm=actuator.length_mm)
     return settings if seed is None else replace(settings, seed=seed)
+
+
+def model_of(spec: Spec, path: Path | None = None, design: ShellDesign | None = None) -> ModelTwin | None:
+    """The twin of the model file `path`, or of the one that a twin's file names; None where there is no model.
+
+    design: of the actuator; where None the one that the twin's file names, else tw3_slw10. Raises UsageError, also for two models, and
+    InputError.
+    """
+    from benchlab.io.design_file import read_design
+    from benchlab.io.twin_file import SHIPPED_CURVE, named_model
+
+    named = named_model(Path(spec.where)) if spec.kind == "twin" and spec.where else None
+    if path is not None and named is not None:
+        hint = "give one of them"
+        raise UsageError(f"--model {path} and the model {named.path.name} of the twin's file are two", hint=hint)
+    if path is None and named is None:
+        return None
+    from benchlab.workflows.explain_cache import default_cache
+    from benchlab.workflows.model_curves import open_model
+    from benchlab.workflows.model_twin import model_twin
+
+    wanted = design or read_design(named.design if named is not None and named.design else SHIPPED_CURVE)
+    opened = open_model(path if path is not None else named.path)  # type: ignore[union-attr]
+    return model_twin(opened, wanted, cache=default_cache())
 
 
 def bench_of(spec: Spec, calibration: Path | None = None, twin: TwinSettings | None = None) -> Bench:

@@ -29,6 +29,7 @@ def header_of(prepared: Prepared, about: dict[str, Any]) -> dict[str, Any]:
         "bench": asdict(prepared.bench),
         "device": about,
         "control": prepared.control,
+        "model": prepared.model,
         "curve": None if prepared.curve is None else asdict(prepared.curve),
         "guards": asdict(prepared.limits),
         "guards_off": list(prepared.limits.off),

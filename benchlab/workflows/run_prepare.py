@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from datetime import datetime
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from benchlab.actuator import ShellDesign
 from benchlab.bench import Bench
@@ -21,9 +21,12 @@ from benchlab.runner.guards.choice import Guard, guards_of
 from benchlab.runner.guards.limits import Limits
 from benchlab.twin.curve import ResponseCurve
 from benchlab.twin.settings import TwinSettings
-from benchlab.workflows.open_bench import Spec, bench_doubts, bench_of, spec_of, twin_of
+from benchlab.workflows.open_bench import Actuator, Spec, bench_doubts, bench_of, model_of, spec_of, twin_of
 from benchlab.workflows.run_control import check_reach, choose, control_told, two_curves
 from benchlab.workflows.run_curve import actuator_of
+
+if TYPE_CHECKING:
+    from benchlab.workflows.model_twin import ModelTwin
 
 REAL_RATES_HZ = (10.0, 500.0)
 """Of a real or emulated bench: slower and its silence limit vents it, faster and the line cannot answer."""
@@ -45,6 +48,7 @@ class RunSettings:
     calibration: Path | None = None
     design: ShellDesign | None = None
     curve: Path | None = None
+    model: Path | None = None
     control: Path | None = None
     out: Path = Path()
     name: str | None = None
@@ -60,7 +64,8 @@ class RunSettings:
 @dataclass(frozen=True)
 class Prepared:
     """A run that may begin. text, sha256: of the protocol. control: as `control_told`; it and controller are None in open loop.
-    curve: what controller and guards believe of the actuator, None where nobody knows it; twin: None for another bench."""
+    curve: what controller and guards believe of the actuator, None where nobody knows it; twin: None for another bench. model: the
+    model file by its name and SHA-256, None where there is none."""
 
     settings: RunSettings
     spec: Spec
@@ -74,6 +79,7 @@ class Prepared:
     twin: TwinSettings | None
     control: dict[str, Any] | None
     controller: Controller | None
+    model: dict[str, Any] | None
     stem: Path
     warnings: tuple[str, ...]
 
@@ -112,8 +118,9 @@ def prepare(protocol: str, settings: RunSettings) -> Prepared:
 
     spec = _checked_spec(settings)
     limits = Limits.of(settings.guards)
-    actuator = actuator_of(settings.design, settings.curve)
-    twin = twin_of(spec, settings.seed, actuator)
+    model = model_of(spec, settings.model, settings.design)
+    actuator = _actuator(settings, model)
+    twin = twin_of(spec, settings.seed, actuator, None if model is None else model.settings)
     bench = bench_of(spec, settings.calibration, twin)
     plan, text, source = read_plan(protocol, settings)
     check_limits(plan, bench, protocol)
@@ -143,9 +150,23 @@ def prepare(protocol: str, settings: RunSettings) -> Prepared:
         twin=twin,
         control=control_told(chosen, curve),
         controller=controller,
+        model=None if model is None else model.about,
         stem=stem,
-        warnings=(*bench_doubts(spec, bench), *_blind(bench), *limits.off_words, *warnings),
+        warnings=(
+            *bench_doubts(spec, bench),
+            *_blind(bench),
+            *limits.off_words,
+            *warnings,
+            *(model.notes_for(twin) if model else ()),
+        ),
     )
+
+
+def _actuator(settings: RunSettings, model: ModelTwin | None) -> Actuator | None:
+    """What is believed of the actuator: --curve, or the model's curve at rest, or that of --design."""
+    if model is None or settings.curve is not None:
+        return actuator_of(settings.design, settings.curve)
+    return Actuator(model.settings.curve, model.settings.design, model.settings.length_mm)
 
 
 def check_room(stem: Path, plan: Plan) -> None:
@@ -182,6 +203,8 @@ def _checked_spec(settings: RunSettings) -> Spec:
         for option in ("video", "seed"):
             if getattr(settings, option) not in (None, False):
                 raise UsageError(f"--{option} is for a twin, and the bench is {spec}", hint=f"leave --{option} out")
+    if settings.model is not None and settings.curve is not None:
+        raise UsageError("--model and --curve both give a response curve", hint="give one of them")
     if settings.design is not None and settings.curve is not None:
         raise UsageError("--design and --curve both give a response curve", hint="give one of them")
     if not 0 < settings.pause_limit_s <= 600:

@@ -177,7 +177,7 @@ def _save(
             simulation={**simulation, "conditions": conditions.as_json()},
             provenance={
                 **made_by("numpy", "scipy", "h5py"),
-                **model_provenance(model),
+                "model": model_provenance(model),
                 "code_sha256": code_digest("simulation", "discrepancy"),
                 "outputs_sha256": digests,
             },
