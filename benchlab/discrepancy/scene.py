@@ -284,11 +284,12 @@ def _follow(value: FloatArray, dt_s: FloatArray, time_constant_s: FloatArray | f
     gone = -np.expm1(-steps)  # share of a step that is followed within dt
     mean = np.where(steps > 1e-6, 1 - gone / np.where(steps > 1e-6, steps, 1), steps / 2)
     mean = np.where(np.isinf(steps), 1.0, mean)
-    moves = mean[1:] * np.diff(value, axis=0)
+    kept, moved = 1 - gone[1:], gone[1:] * value[:-1] + mean[1:] * np.diff(value, axis=0)
     out = np.empty(np.broadcast_shapes(value.shape, steps.shape))
-    state = out[0] = start
-    for i, (share, move) in enumerate(zip(gone[1:], moves)):
-        state = out[i + 1] = state + share * (value[i] - state) + move
+    out[0] = start
+    for i, (share, move) in enumerate(zip(kept, moved)):
+        np.multiply(share, out[i], out=out[i + 1])
+        out[i + 1] += move
     return out
 
 

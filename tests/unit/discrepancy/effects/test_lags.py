@@ -63,7 +63,9 @@ def test_what_lags_is_the_command_where_it_is_known() -> None:
         inside("regulator_lag", shifted, lag_s=0.2), inside("regulator_lag", on, lag_s=0.2) + 0.02, atol=1e-12
     )
     steps = replace(on, command_MPa=np.full_like(on.pressure_MPa, 0.1))
-    assert np.array_equal(inside("regulator_lag", steps, lag_s=0.2), on.pressure_MPa), "a command at rest has no lag"
+    np.testing.assert_allclose(
+        inside("regulator_lag", steps, lag_s=0.2), on.pressure_MPa, atol=1e-15, err_msg="a command at rest has no lag"
+    )
     some = on.command_MPa.copy()
     some[3] = np.nan
     np.testing.assert_allclose(
