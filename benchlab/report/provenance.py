@@ -16,7 +16,7 @@ PROVENANCE = "Provenance"
 def provenance_section(
     rows: Sequence[tuple[str, str]], made: Mapping[str, Any], inputs: Mapping[str, str], numbers: str
 ) -> Section:
-    """rows: what comes first. made: as workflows.provenance.made_by gives it. inputs: SHA-256 by file. numbers: file that has them whole."""
+    """rows: what comes first. made: as workflows.provenance.made_by gives it. inputs: SHA-256 by file. numbers: file that has these."""
     versions = ", ".join(f"{name} {version}" for name, version in made["versions"].items())
     command = shlex.join([Path(made["argv"][0]).name, *made["argv"][1:]])
     told = [*rows, ("Command", command), ("Made", made["created"]), ("Versions", versions)]

@@ -30,6 +30,7 @@ from benchlab.report.explain.words import (
     next_lines,
     percent,
     set_words,
+    unseen,
     verdict_title,
     verdict_words,
 )
@@ -106,7 +107,7 @@ def _tiles(explanation: Explanation) -> Iterator[Tile]:
     quantity, gap = main_quantity(explanation.curves), explanation.gap
     held = math.isfinite(gap.heldout_before) and math.isfinite(gap.heldout_after)
     before, after = (gap.heldout_before, gap.heldout_after) if held else (gap.rmse_before, gap.rmse_after)
-    where = "on held-out samples" if held else "on the data of the fit"
+    where = f"on held-out {unseen(explanation)}" if held else "on the data of the fit"
     if explanation.effects:
         value = f"{quantity.amount(before)} → {quantity.amount(after)}"
         yield Tile(value, f"gap, root mean square, {where}", f"{quantity.noun}, before → after")
@@ -114,23 +115,14 @@ def _tiles(explanation: Explanation) -> Iterator[Tile]:
         yield Tile(quantity.amount(before), f"gap, root mean square, {where}", quantity.noun)
     if math.isfinite(gap.noise_floor):
         yield Tile(quantity.amount(gap.noise_floor), "noise floor", "a sample about the mean of its design")
-    share = _share(explanation)
-    if share is not None:
+    if explanation.effects:
+        share = sum(found.share_explained for found in explanation.effects)
         ceiling = f"; any model: at most {percent(gap.ceiling)}" if math.isfinite(gap.ceiling) else ""
         yield Tile(
             percent(share), "of the gap explained", f"{set_words([f.name for f in explanation.effects])}{ceiling}"
         )
     if explanation.verdict == "ambiguous":
         yield Tile(str(len(explanation.rivals)), "explanations left", "not to be told apart by these data")
-
-
-def _share(explanation: Explanation) -> float | None:
-    """Of the gap, by all that was named together; None where nothing was, or it is not told."""
-    names = {found.name for found in explanation.effects}
-    together = [one.share_explained for one in explanation.tried if names and set(one.names) == names]
-    if not together and len(names) == 1:
-        together = [explanation.effects[0].share_explained]
-    return together[0] if together and math.isfinite(together[0]) else None
 
 
 def _where(explanation: Explanation) -> Iterator[Block]:

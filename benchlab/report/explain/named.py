@@ -16,7 +16,7 @@ from benchlab.report.explain.tables import parameters_table
 from benchlab.report.explain.words import percent
 
 _WIDE = re.compile(r"\s{2,}")
-_SIGNS = re.compile(r"\s*\([a-z ]+\)$")
+_BLANK = re.compile(r"\n\s*\n")
 
 
 def named_blocks(explanation: Explanation, vocabulary: Mapping[str, Effect]) -> Iterator[Block]:
@@ -45,8 +45,10 @@ def _effect(found: Found, effect: Effect | None) -> Iterator[Block]:
         yield Words(share, "lead", f"{head}.")
         return
     yield Words(f"{share} {cut(effect.physics, 1200)}", "lead", f"{head}.")
-    for line in equation_of(effect):
-        yield Words(line, head="Equation.")
+    equation, letters = equation_of(effect)
+    if equation:
+        yield Words(equation, head="Equation.")
+        yield Words(letters, "small")
     forms = (
         f"; other forms fit alike: {and_words([cut(form, 30) for form in found.other_forms])}"
         if found.other_forms
@@ -56,18 +58,19 @@ def _effect(found: Found, effect: Effect | None) -> Iterator[Block]:
     yield Words(f"{cut(effect.looks_like, 400)}. Shown by: {cut(effect.shown_by, 400)}.", head="Looks like:")
 
 
-def equation_of(effect: Effect) -> list[str]:
-    """The equations in the documentation of an effect's file: its lines that are set in.
+def equation_of(effect: Effect) -> tuple[str, str]:
+    """The equations in the documentation of an effect's file, those lines of it that are set in, and the paragraph after them: what the letters
+    mean. "" where the file has none.
 
-    >>> from benchlab.discrepancy.effects.friction import Friction
-    >>> equation_of(Friction())[0][:8]
-    'θ = P(u)'
+    >>> from benchlab.discrepancy.effects.frame_compliance import FrameCompliance
+    >>> equation_of(FrameCompliance())[0]
+    'F → F·(1 − s)'
     """
     module = sys.modules.get(type(effect).__module__)
-    lines = (inspect.getdoc(module) or "").splitlines() if module else []
-    indented = [
-        _SIGNS.sub("", line).strip()
-        for line in lines
-        if line.startswith("    ") and not line.lstrip().startswith((">>>", "..."))
-    ]
-    return [cut(_WIDE.sub("; ", line), 300) for line in indented if "=" in line or "≤" in line]
+    parts = _BLANK.split(inspect.getdoc(module) or "") if module else []
+    at = next((i for i, part in enumerate(parts) if part.startswith("    ") and ">>>" not in part), None)
+    if at is None:
+        return "", ""
+    lines = [_WIDE.sub("; ", line.strip()) for line in parts[at].splitlines()]
+    letters = " ".join(" ".join(parts[at + 1 : at + 2]).replace("`", "").split())
+    return cut("; ".join(lines), 400), cut(letters.removesuffix("."), 900) + "." * bool(letters)

@@ -76,13 +76,13 @@ def _agree(explanation: Explanation, quantity: Quantity, gap: Gap) -> str:
 def _named(explanation: Explanation, quantity: Quantity, gap: Gap) -> str:
     names = [found.name for found in explanation.effects]
     with_it = "it" if len(names) == 1 else "them"
-    return f"The simulation lacks {set_words(names)} ({_p_gap(explanation)}). With {with_it} {_shrinks(quantity, gap)}."
+    return f"The simulation lacks {set_words(names)} ({_p_gap(explanation)}). With {with_it} {_shrinks(explanation, quantity)}."
 
 
 def _ambiguous(explanation: Explanation, quantity: Quantity, gap: Gap) -> str:
     rivals = [set_words(names) for names in explanation.rivals]
     shown = [*rivals[:5], *[f"{len(rivals) - 5} more"] * (len(rivals) > 5)]
-    best = f" With the best of them {_shrinks(quantity, gap)}." if explanation.effects else ""
+    best = f" With the best of them {_shrinks(explanation, quantity)}." if explanation.effects else ""
     return (
         f"{_disagree(explanation, quantity, gap)}, and these data cannot tell {counted(len(rivals), 'explanation')} apart: "
         f"{'; '.join(shown)}.{best}"
@@ -93,9 +93,7 @@ def _unexplained(explanation: Explanation, quantity: Quantity, gap: Gap) -> str:
     text = f"{_disagree(explanation, quantity, gap)}, and no effect of the vocabulary explains it"
     if explanation.effects:
         names = set_words([found.name for found in explanation.effects])
-        text += (
-            f": {names} {'come' if len(explanation.effects) > 1 else 'comes'} nearest, and {_shrinks(quantity, gap)}"
-        )
+        text += f": {names} {'come' if len(explanation.effects) > 1 else 'comes'} nearest, and {_shrinks(explanation, quantity)}"
     return f"{text}."
 
 
@@ -106,12 +104,23 @@ def _disagree(explanation: Explanation, quantity: Quantity, gap: Gap) -> str:
     )
 
 
-def _shrinks(quantity: Quantity, gap: Gap) -> str:
-    """How the gap falls: on held-out samples where there are any."""
+def unseen(explanation: Explanation) -> str:
+    """What the numbers of held-out data belong to: samples or, of a table of means, designs."""
+    kinds = {one.kind for one in explanation.held_out}
+    return "designs" if "design" in kinds and "sample" not in kinds else "samples"
+
+
+def _shrinks(explanation: Explanation, quantity: Quantity) -> str:
+    """How the gap falls: on held-out data where there are any."""
+    gap = explanation.gap
     if math.isfinite(gap.heldout_before) and math.isfinite(gap.heldout_after):
-        before, after, where = gap.heldout_before, gap.heldout_after, "on samples that the fit has not seen"
+        before, after, where = (
+            gap.heldout_before,
+            gap.heldout_after,
+            f"on {unseen(explanation)} that the fit has not seen",
+        )
     else:
-        before, after, where = gap.rmse_before, gap.rmse_after, "on the data of the fit (no sample could be held out)"
+        before, after, where = gap.rmse_before, gap.rmse_after, "on the data of the fit (nothing could be held out)"
     verb = "falls" if after < before else "does not fall: it goes"
     text = f"the gap {verb} from {quantity.amount(before)} to {quantity.amount(after)} {where}"
     if math.isfinite(gap.noise_floor):
@@ -177,7 +186,7 @@ def gap_lines(explanation: Explanation) -> Iterator[str]:
     quantity, gap = main_quantity(explanation.curves), explanation.gap
     yield f"on the data of the fit {_change(quantity, gap.rmse_before, gap.rmse_after)} (root mean square of measured − model)"
     if math.isfinite(gap.heldout_before) and math.isfinite(gap.heldout_after):
-        yield f"on held-out samples {_change(quantity, gap.heldout_before, gap.heldout_after)}"
+        yield f"on held-out {unseen(explanation)} {_change(quantity, gap.heldout_before, gap.heldout_after)}"
     if math.isfinite(gap.noise_floor):
         yield f"noise floor {quantity.amount(gap.noise_floor)}: as near as a faultless model comes to a held-out sample"
     if math.isfinite(gap.ceiling):

@@ -130,6 +130,8 @@ def finish(figure: Figure, ax: Axes, title: str, columns: int) -> None:
     legend = figure.legend(*ax.get_legend_handles_labels(), loc="lower center", bbox_to_anchor=(0.5, 0.0), ncols=columns, fontsize=8.5,
                            frameon=False, borderaxespad=0.3, columnspacing=1.6, handletextpad=0.5)  # fmt: skip
     legend.set_in_layout(False)
+    for text in legend.get_texts():
+        text.set_parse_math(False)
     make_room(figure, ax)
 
 

@@ -82,7 +82,7 @@ FRICTION = Found(
                          "growth": Estimate(1.0, NAN, NAN, "", "growth of the width with pressure", True)}, 0.834, ("play",),
 )  # fmt: skip
 SOFTENING = Found(
-    "softening", "plain", {"share": Estimate(0.081, 0.052, 0.11, "1", "share of the stiffness that is lost")}, 0.11
+    "softening", "plain", {"share": Estimate(0.081, 0.052, 0.11, "1", "share of the stiffness that is lost")}, 0.09
 )
 GAIN = Found("pressure_gain", "plain", {"gain": Estimate(1.05, 1.02, 1.08, "", "reading over true pressure")}, 0.74)
 TRIED = (

@@ -1,0 +1,159 @@
+"""What the figures draw, against the closed form of the curves: the cells of the map, the lines, the rows."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from benchlab.report.explain.change_figure import Change, draw_changes
+from benchlab.report.explain.curves_figure import (
+    EXPLAINED,
+    chosen,
+    draw_kind,
+    draw_points,
+    is_point,
+    kinds,
+    limits_of,
+)
+from benchlab.report.explain.map_figure import MOST_COLUMNS, MOST_ROWS, colour_limit, draw_gap_map, gap_map
+from benchlab.report.explain.overview import draw_overview
+from benchlab.report.explain.quantity import Quantity
+from benchlab.report.panels import BLUE
+from benchlab.report.study.figures import OTHER
+from tests.unit.report import explanations
+
+ANGLE = Quantity("angle_deg")
+FOUND = explanations.curves({"a": 100.0, "b": 50.0})
+
+
+def texts(figure: Figure) -> list[str]:
+    figure.draw_without_rendering()
+    return [text.get_text() for text in figure.findobj(lambda artist: hasattr(artist, "get_text")) if text.get_text()]
+
+
+def test_cells_are_measured_less_simulated_and_dots_where_it_is_sure() -> None:
+    found = gap_map(FOUND, "angle_deg")
+    assert found.designs == ("a",) * 5 + ("b",) * 5
+    assert found.details[:5] == (
+        "loading, 0.01 MPa/s",
+        "loading, 0.12 MPa/s",
+        "hold",
+        "unloading, 0.01 MPa/s",
+        "unloading, 0.12 MPa/s",
+    )
+    shares = np.arange(1, 9) / 8
+    np.testing.assert_allclose(found.gap[0], -5.0 * shares)
+    np.testing.assert_allclose(found.gap[8], 2.0 * shares)
+    assert np.isnan(found.gap[2, :-1]).all() and found.gap[2, -1] == pytest.approx(-5 * np.mean(1 - shares / 2))
+    assert found.sure[0].tolist() == (shares > 0.5).tolist()
+    middles = (found.pressure_MPa[1:] + found.pressure_MPa[:-1]) / 2
+    np.testing.assert_allclose(middles, 0.35 * shares, atol=1e-4)
+
+
+def test_what_is_left_is_measured_less_explained() -> None:
+    np.testing.assert_allclose(gap_map(FOUND, "angle_deg", "explained").gap, 0.15 * gap_map(FOUND, "angle_deg").gap)
+
+
+def test_too_many_rows_lose_cycles_then_rates_never_directions_then_designs() -> None:
+    many = explanations.curves({f"d{i}": 10.0 + i for i in range(30)}, rates=(0.01, 0.1), cycles=3)
+    found = gap_map(many, "angle_deg")
+    assert len(found.designs) <= MOST_ROWS and set(found.details) == {"loading", "hold", "unloading"}
+    assert found.hidden == 10 and "d29" in found.designs and "d0" not in found.designs
+    assert found.gap[0].max() < 0 < found.gap[2].min()
+    fewer = gap_map(many, "angle_deg", most=15 * 30)
+    assert len(fewer.designs) == 15 * 30 and fewer.hidden == 0 and "loading, 0.01 MPa/s, cycle 2" in fewer.details
+
+
+def test_many_pressures_share_columns() -> None:
+    assert gap_map(explanations.curves(bins=50), "angle_deg").gap.shape[1] == MOST_COLUMNS
+
+
+def test_colours_end_at_the_largest_gap_but_scatter_looks_pale() -> None:
+    assert colour_limit(FOUND, "angle_deg") == pytest.approx(5.0)
+    assert colour_limit(explanations.agreeing().curves, "angle_deg") == pytest.approx(2 * 0.02 * 84.6)
+    figure = draw_gap_map(gap_map(FOUND, "angle_deg"), ANGLE, "a title", 5.0)
+    assert figure.axes[0].collections[0].get_clim() == (-5.0, 5.0)
+    assert "a, loading, 0.01 MPa/s" in texts(figure) and "measured − model (°)" in texts(figure)
+
+
+def test_a_panel_has_the_lines_of_its_design_and_kind() -> None:
+    one = kinds(FOUND, "angle_deg")[1]
+    assert one.title == "a, 0.35 MPa at 0.12 MPa/s" and not one.held
+    upper, lower = draw_kind(FOUND, one, ("measured", "with friction"), limits_of(FOUND, "angle_deg"), legend=True).axes
+    shares = np.arange(1, 9) / 8
+    drawn = {
+        colour: [line.get_ydata() for line in upper.lines if line.get_color() == colour]
+        for colour in (BLUE, OTHER, EXPLAINED)
+    }
+    np.testing.assert_allclose(drawn[BLUE], [95 * shares, 104 * shares])
+    np.testing.assert_allclose(drawn[OTHER], [100 * shares] * 2)
+    np.testing.assert_allclose(drawn[EXPLAINED], [(100 - 5 * 0.85) * shares, (100 + 4 * 0.85) * shares])
+    gaps = {
+        colour: [line.get_ydata() for line in lower.lines if line.get_color() == colour]
+        for colour in (OTHER, EXPLAINED)
+    }
+    np.testing.assert_allclose(gaps[OTHER], [-5 * shares, 4 * shares])
+    np.testing.assert_allclose(gaps[EXPLAINED], [-0.75 * shares, 0.6 * shares])
+    assert [text.get_text() for text in upper.get_legend().get_texts()] == ["measured", "simulated", "with friction"]
+
+
+def test_holds_are_drawn_against_time_each_pressure_by_itself() -> None:
+    held = [one for one in kinds(FOUND, "angle_deg") if one.held]
+    assert [one.design for one in held] == ["a", "b"]
+    upper, lower = draw_kind(FOUND, held[0], ("measured", "x"), limits_of(FOUND, "angle_deg"), legend=False).axes
+    np.testing.assert_allclose(upper.lines[0].get_xdata(), 30 * np.arange(1, 9) / 8)
+    assert lower.get_xlabel() == "time held (s)"
+    low = replace(
+        FOUND, pressure_MPa=np.where(FOUND.design == "b", 0.2, FOUND.pressure_MPa), design=np.full(len(FOUND.p), "a")
+    )
+    assert len([one for one in kinds(low, "angle_deg") if one.held]) == 2
+
+
+def test_of_many_cycles_the_first_and_the_last_are_drawn() -> None:
+    many = explanations.curves({"a": 100.0}, rates=(0.1,), cycles=5, hold=False)
+    upper, _ = draw_kind(many, kinds(many, "angle_deg")[0], ("m", "x"), limits_of(many, "angle_deg"), legend=False).axes
+    assert len([line for line in upper.lines if line.get_color() == BLUE]) == 4  # two directions, two cycles
+
+
+def test_chosen_panels_have_each_design_and_then_the_largest_gaps() -> None:
+    found = kinds(FOUND, "angle_deg")
+    kept = chosen(found, 4)
+    assert len(kept) == 4 and {one.design for one in kept} == {"a", "b"}
+    assert sum(one.design == "a" for one in kept) == 3 and [id(one) for one in kept] == [
+        id(one) for one in found if one in kept
+    ]
+
+
+def test_a_table_of_means_is_rows() -> None:
+    found = explanations.published().curves
+    rows = kinds(found, "angle_deg")
+    assert all(is_point(found, one) for one in rows)
+    figure = draw_points(found, rows, ("measured", "with gain"), ANGLE)
+    simulated = next(line for line in figure.axes[0].lines if line.get_label() == "simulated")
+    assert simulated.get_xdata().tolist() == [119.5, 130.2, 62.4, 84.6, 55.7]
+    assert "Means of designs at 0.35 MPa" in texts(figure)
+
+
+def test_changes_are_rows_from_before_to_after() -> None:
+    figure = draw_changes([Change("s1", 4.9, 1.3, 1.2), Change("s2", 5.0, 1.4)], ANGLE, "with friction", "t")
+    drawn = {line.get_label(): line.get_xdata().tolist() for line in figure.axes[0].lines}
+    assert drawn["before: simulated"] == [4.9, 5.0] and drawn["after: with friction"] == [1.3, 1.4]
+    assert drawn["noise floor"][0] == 1.2 and np.isnan(drawn["noise floor"][1])
+
+
+@pytest.mark.parametrize("kind", explanations.ALL)
+def test_the_overview_of_each_verdict(kind: str) -> None:
+    found = explanations.ALL[kind]()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        figure = draw_overview(found)
+        said = texts(figure)
+    title = {"agree": "Simulation and measurement agree", "named": "Missing: friction", "ambiguous": "3 explanations are left",
+             "unexplained": "A gap that no known effect explains"}[found.verdict]  # fmt: skip
+    assert title in said and ("simulated data" in said) == found.simulated
+    box, (width, height) = figure.get_tightbbox(), figure.get_size_inches()
+    assert box.x0 > -0.02 and box.y0 > -0.02 and box.x1 < width + 0.02 and box.y1 < height + 0.02
