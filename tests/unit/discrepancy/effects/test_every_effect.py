@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -55,19 +56,18 @@ def neutral(effect: Effect) -> dict[str, float]:
     return {p.name: p.typical if p.neutral is None else p.neutral for p in effect.parameters}
 
 
-def scene_for(effect: Effect, **options: object) -> Scene:
+def scene_for(effect: Effect, points: int = 1) -> Scene:
     """Where every effect can show: ordered runs 100 s apart, and a beam for the one that needs it."""
-    kind = "beam" if effect.name == "window_ballooning" else "cell"
-    on = options.pop("on", None) or base(3, kind=kind)
-    return scene(designs=3, samples=1, on=on, start_s=0.0, **options)  # type: ignore[arg-type]
+    return _scene("beam" if effect.name == "window_ballooning" else "cell", points)
+
+
+@cache
+def _scene(kind: str, points: int) -> Scene:
+    return scene(designs=3, samples=1, on=base(3, kind=kind), start_s=0.0, points=points)
 
 
 def given(effect: Effect, form: str, on: Scene, values: Mapping[str, float]) -> dict[str, np.ndarray]:
     return predict(on, [Active(effect, values, form)], QUANTITIES)
-
-
-def largest_change(one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray], real: np.ndarray) -> float:
-    return max(float(np.abs(one[quantity] - other[quantity])[real].max()) for quantity in QUANTITIES)
 
 
 def test_the_catalogue_is_the_vocabulary_in_its_order() -> None:
