@@ -34,6 +34,7 @@ sys.path.insert(0, str(ROOT))
 
 from tests.blind.baselines import RULES, sparse_regression  # noqa: E402
 from tests.blind.cards import FIRST_SEED, Case, cases  # noqa: E402
+from tests.blind.generator.solved import LENGTH_MM  # noqa: E402
 from tests.blind.generator.study import Study  # noqa: E402
 from tests.blind.score_card import Scored, score_card  # noqa: E402
 from tests.blind.seal import check_seal  # noqa: E402
@@ -88,7 +89,7 @@ def answer_case(case: Case, card: str, identifier: str, baselines: bool) -> dict
         record["seconds"] = round(time.perf_counter() - begun, 3)
         every_fit = result.pop("every_fit", None)
         record["result"] = result
-        if case.kind == "pair" and result.get("next_experiment"):
+        if case.kind == "pair" and (result.get("next_experiment") or {}).get("protocol"):
             record |= _second(study, result["next_experiment"], explain, case.seed)
         if baselines:
             record["baselines"] = {name: rule(every_fit) for name, rule in RULES.items()} if every_fit else {}
@@ -100,14 +101,22 @@ def answer_case(case: Case, card: str, identifier: str, baselines: bool) -> dict
 
 
 def _second(study: Study, proposed: dict[str, Any], explain: Explain, seed: int) -> dict[str, Any]:
-    """The proposed experiment run on the same truth, its table put under the first, and all of it explained."""
-    asked = {name: proposed[name] for name in ("orientation_deg", "length_mm") if proposed.get(name) is not None}
+    """The proposed experiment run on the same truth, its tables put under the first, and all of it explained.
+
+    proposed: `protocol`, and where it asks for them `mountings_deg` (one run each, null: as before) and `length_ratio` (of the actuators made
+    for it to those there are).
+    """
+    ratio = proposed.get("length_ratio") or 1.0
+    length_mm = None if ratio == 1 else ratio * LENGTH_MM
     try:
-        frame, designs = study.measure(proposed["protocol"], **asked)
+        runs = [
+            study.measure(proposed["protocol"], orientation_deg=mounting, length_mm=length_mm)
+            for mounting in proposed.get("mountings_deg") or [None]
+        ]
     except Exception as error:
         return {"second": None, "second_error": f"{type(error).__name__}: {error}"}
-    both = pd.concat([study.frame, frame], ignore_index=True)
-    made = pd.concat([study.designs, designs], ignore_index=True).drop_duplicates("design")
+    both = pd.concat([study.frame, *(frame for frame, _ in runs)], ignore_index=True)
+    made = pd.concat([study.designs, *(designs for _, designs in runs)], ignore_index=True).drop_duplicates("design")
     begun = time.perf_counter()
     second = explain(both, made, seed=seed)
     return {"second": second, "second_seconds": round(time.perf_counter() - begun, 3)}

@@ -191,7 +191,7 @@ def _pairs(every: Sequence[Scored]) -> str:
     for truth, rival in dict.fromkeys((o.case.names[0], o.case.rival) for o in pairs):
         here = [o for o in pairs if o.case.names == (truth,) and o.case.rival == rival]
         by = here[0].case.separated_by
-        proposed = sum(bool(o.result.get("next_experiment")) for o in here)
+        proposed = sum(bool((o.result.get("next_experiment") or {}).get("protocol")) for o in here)
         rows.append(
             [
                 f"`{truth}` (`{rival}`)",

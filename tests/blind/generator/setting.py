@@ -66,8 +66,8 @@ class Setting:
         turned = np.array(layout.orientations_deg or (0.0,))
         orientation = turned[np.array([int(one.sample[1:]) - 1 for one in samples]) % len(turned)]
         begun = _starts(runs, len(samples), rng)
-        rise = rng.uniform(6, 12) * rng.choice([-0.4, 1.0]) if layout.warming else 0.0
-        room = Room(23 + rng.uniform(-0.5, 0.5), rise, rng.uniform(1500, 5000))
+        rise = rng.uniform(6, 12) * rng.choice([-0.7, 1.0]) if layout.warming else 0.0
+        room = Room(23 + rng.uniform(-0.5, 0.5), rise, rng.uniform(0.15, 0.5) * float(begun.max()))
         return cls(layout, samples, runs, orientation, begun, room)
 
     def stations(self, substeps: int) -> list[tuple[Run, Station]]:

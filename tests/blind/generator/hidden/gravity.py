@@ -62,6 +62,6 @@ def _change_deg(tw: float, slw: float, length: float, orientation: float, mass_g
         moment = weight * (whole[:, -1:] - whole - aside * (length - s))
         step = 0.4 * (free - moment / stiffness - kappa)
         kappa += step
-        if np.abs(step).max() * length < 1e-6:
+        if np.abs(step).max() * length < 1e-9:
             break
     return np.degrees((kappa - free) @ sums[:, -1])

@@ -20,7 +20,7 @@ class Temperature(Hidden):
     """size: part of the film's modulus lost per K above 23 °C, exponentially."""
 
     name: ClassVar[str] = "temperature"
-    bounds: ClassVar[tuple[float, float]] = (1e-5, 0.045)
+    bounds: ClassVar[tuple[float, float]] = (1e-5, 0.06)
     typical: ClassVar[float] = 0.008
     by_sample: ClassVar[bool] = True
 
