@@ -49,8 +49,11 @@ class Wanted:
 class Lab(Protocol):
     """origin: where its numbers are from, as tables say it. about: the same in words, with what was chosen."""
 
-    origin: str
-    about: str
+    @property
+    def origin(self) -> str: ...
+
+    @property
+    def about(self) -> str: ...
 
     def measure(self, wanted: Wanted) -> Run:
         """Make the run; its drive file lies in the folder. Raises BenchError where it did not go to its end, KeyboardInterrupt where

@@ -18,9 +18,14 @@ from benchlab.discrepancy.trial import with_length
 from benchlab.errors import InputError, UsageError
 from benchlab.io.files import make_folder, written_whole
 from benchlab.io.nexus import plain
+from benchlab.io.twin_file import read_twin
 from benchlab.workflows.explain_lab import Lab
+from benchlab.workflows.explain_mount import MountedLab
 from benchlab.workflows.explain_next import write_next
 from benchlab.workflows.explain_round import Round, measure_round
+from benchlab.workflows.explain_twin import TwinLab
+from benchlab.workflows.open_bench import spec_of
+from benchlab.workflows.run_prepare import RunSettings
 
 Explainer = Callable[[Sequence[Path], Base], Explanation]
 """Explains tables of runs, against the base."""
@@ -91,6 +96,30 @@ class Loop:
             "origin": self.origin,
             "rounds": [_told(one) for one in self.rounds],
         }
+
+
+def lab_of(
+    run: RunSettings,
+    base: Base,
+    ask: Callable[[str], object],
+    *,
+    seed: int = 1,
+    film: bool = False,
+    twin: Path | None = None,
+) -> Lab:
+    """The lab of `--bench`: a twin with the effects of its file (`twin:FILE`, or `twin`), or a bench at which somebody mounts samples.
+
+    run: bench, calibration, guards. ask: shows a line and returns when it is done. Raises UsageError for an option that is for a twin only.
+    """
+    spec = spec_of(run.bench)
+    if spec.kind == "twin":
+        return TwinLab(base, read_twin(twin or (Path(spec.where) if spec.where else None)), seed, film)
+    for option, given in (("--twin", twin is not None), ("--film", film)):
+        if given:
+            raise UsageError(f"{option} is for a twin, and the bench is {spec}", hint=f"leave {option} out")
+    if spec.kind == "replay":
+        raise UsageError("a replay makes no new run", hint="give --bench twin or serial:PORT")
+    return MountedLab(run, ask)
 
 
 def explain_loop(

@@ -16,8 +16,12 @@ from benchlab.discrepancy.measured import Measured, Run
 from benchlab.errors import UsageError
 from benchlab.io.measured_table import read_measured
 from benchlab.io.runs_table import write_runs_csv
+from benchlab.twin.effects.end_caps import EndCaps
 from benchlab.workflows.explain_lab import Wanted
-from benchlab.workflows.explain_loop import Loop, LoopSettings, explain_loop
+from benchlab.workflows.explain_loop import Loop, LoopSettings, explain_loop, lab_of
+from benchlab.workflows.explain_mount import MountedLab
+from benchlab.workflows.explain_twin import TwinLab
+from benchlab.workflows.run_prepare import RunSettings
 from tests.unit.discrepancy.scenes import base
 from tests.unit.workflows.explanations import explanation
 
@@ -164,6 +168,23 @@ def test_the_first_protocol_keeps_to_the_bench(tmp_path: Path) -> None:
 def test_settings_out_of_range_are_refused(wrong: dict[str, float], tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=f"--{next(iter(wrong))}"):
         LoopSettings(tmp_path, **wrong).check()  # type: ignore[arg-type]
+
+
+def test_the_bench_decides_on_the_lab(tmp_path: Path) -> None:
+    (tmp_path / "twin.yaml").write_text("effects:\n  end_caps: {cap_mm: 7}\n")
+    lab = lab_of(RunSettings(bench=f"twin:{tmp_path / 'twin.yaml'}"), base(1), print, seed=3)
+    assert isinstance(lab, TwinLab) and lab.seed == 3 and lab.hidden.effects["end_caps"] == EndCaps(7)
+    assert "simulated, not measured" in lab.about and "chosen" in lab.about
+    assert isinstance(lab_of(RunSettings(bench="serial:/dev/null"), base(1), print), MountedLab)
+
+
+@pytest.mark.parametrize(
+    ("bench", "options", "words"),
+    [("emulated", {"film": True}, "--film is for a twin"), ("replay:a.h5", {}, "a replay makes no new run")],
+)
+def test_what_a_bench_cannot_give_is_refused(bench: str, options: dict[str, bool], words: str) -> None:
+    with pytest.raises(UsageError, match=words):
+        lab_of(RunSettings(bench=bench), base(1), print, **options)
 
 
 def test_runs_come_back_from_their_table(tmp_path: Path) -> None:

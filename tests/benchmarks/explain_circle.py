@@ -1,0 +1,141 @@
+"""The circle of `benchlab explain`: effects hidden in the twin, drawn by seed → protocol → twin → camera → table → explained from the tables alone.
+
+`python -m tests.benchmarks.explain_circle` prints one row a case and how many were named right; `--cases 0:5` takes some of them, `--film` draws each
+run as a film and analyses it (a minute a run), `--rounds 2` also runs what is proposed. Designs are those of the paper's table, their curves the
+shell cell's. The twin's effects share no code with those of the discrepancies: other forms, other numerics.
+"""
+
+from __future__ import annotations
+
+import argparse
+import tempfile
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from benchlab.actuator import ShellDesign
+from benchlab.discrepancy.base import Base
+from benchlab.discrepancy.effects.catalogue import effects
+from benchlab.discrepancy.explain import explain
+from benchlab.discrepancy.explanation import Explanation
+from benchlab.io.layup_file import read_layup
+from benchlab.io.measured_table import read_measured
+from benchlab.io.twin_file import read_twin
+from benchlab.twin.effects.catalogue import EFFECTS
+from benchlab.twin.settings import Camera, TwinSettings
+from benchlab.workflows.explain_base import base_pressures, cell_base
+from benchlab.workflows.explain_loop import LoopSettings, explain_loop
+from benchlab.workflows.explain_twin import TwinLab
+
+SHAPES = ((3, 10), (3, 5), (3, 20), (9, 10))
+"""(tw, slw) in mm."""
+
+DRAWN: dict[str, dict[str, tuple[float, float]]] = {
+    "friction": {"half_width_deg_per_MPa": (8, 20)},
+    "viscoelasticity": {"share_1": (0.08, 0.2), "time_1_s": (0.3, 3)},
+    "softening": {"softer": (0.1, 0.25)},
+    "end_caps": {"cap_mm": (8, 20)},
+    "dead_pressure": {"dead_MPa": (0.015, 0.04)},
+    "gravity": {"sag_deg": (4, 10)},
+    "leakage": {"share": (0.06, 0.15)},
+    "regulator_lag": {"lag_s": (0.15, 0.5)},
+    "line_resistance": {"resistance_MPa_s_per_mL": (0.01, 0.04)},
+    "pressure_gain": {"gain": (1.06, 1.15)},
+    "pressure_offset": {"offset_MPa": (0.01, 0.03)},
+    "camera_scale": {"factor": (1.06, 1.15)},
+    "marker_offset": {"offset_mm": (5, 12)},
+    "clock_offset": {"ahead_s": (0.15, 0.5)},
+}
+"""Effects that are hidden, one at a time, and between what their parameters are drawn; others keep their typical values."""
+
+NULLS = 2
+ALWAYS = ("dac_steps", "sensor_noise")
+"""Of the twin in every case: not what is looked for."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """name: of the hidden effect, "" where nothing is. twin: with it."""
+
+    name: str
+    parameters: Mapping[str, float]
+    twin: TwinSettings
+
+
+def cases(seed: int) -> list[Case]:
+    found = []
+    for index, name in enumerate((*DRAWN, *[""] * NULLS)):
+        rng = np.random.default_rng([seed, index])
+        drawn = {key: float(rng.uniform(*between)) for key, between in DRAWN.get(name, {}).items()}
+        found.append(Case(name, drawn, twin_with({name: drawn} if name else {})))
+    return found
+
+
+def twin_with(hidden: Mapping[str, Mapping[str, float]]) -> TwinSettings:
+    shown = read_twin(None)
+    on = {name: effect for name, effect in shown.effects.items() if name in ALWAYS}
+    on |= {name: EFFECTS[name](**values) for name, values in hidden.items()}
+    return replace(shown, effects=on, camera=Camera(frames_per_s=30, width_px=640, height_px=480))
+
+
+def base_of(cache: Path, shapes: Sequence[tuple[float, float]] = SHAPES) -> Base:
+    designs = [ShellDesign(strip_width_mm=slw, window_width_mm=tw) for tw, slw in shapes]
+    layup = read_layup("from-measured-angles")
+    return cell_base({one.name: one for one in designs}, layup, base_pressures(0.35), forces=False, jobs=2, cache=cache)
+
+
+def explained(tables: Sequence[Path], base: Base) -> Explanation:
+    return explain(read_measured(tables), base, effects(), seed=1).explanation
+
+
+def judged(case: Case, found: Explanation) -> str:
+    """right, in the set, wrong, missed, or false: a name where nothing was hidden."""
+    sets = [{effect.name for effect in found.effects}] if found.verdict == "named" else [set(s) for s in found.rivals]
+    if not case.name:
+        return "right" if found.verdict == "agree" else "false" if sets else "missed"
+    if not any(sets):
+        return "missed"
+    if not any(case.name in names for names in sets):
+        return "wrong"
+    return "right" if sets == [{case.name}] else "in the set"
+
+
+def told(case: Case, found: Explanation, took_s: float) -> str:
+    names = " | ".join("+".join(names) for names in found.rivals) or "+".join(effect.name for effect in found.effects)
+    drawn = ", ".join(f"{name} {value:.3g}" for name, value in case.parameters.items())
+    gap = found.gap
+    return (
+        f"| {case.name or 'nothing'} | {drawn} | {found.verdict} | {names} | {judged(case, found)} | {gap.rmse_before:.2f} → {gap.rmse_after:.2f} "
+        f"({gap.noise_floor:.2f}) | {took_s:.0f} |"
+    )
+
+
+def main() -> None:
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("--cases", default=":")
+    options.add_argument("--seed", type=int, default=7)
+    options.add_argument("--samples", type=int, default=4)
+    options.add_argument("--rounds", type=int, default=1)
+    options.add_argument("--film", action="store_true")
+    options.add_argument("--cache", type=Path, default=Path(tempfile.gettempdir()) / "benchlab-circle")
+    given = options.parse_args()
+    given.cache.mkdir(exist_ok=True)
+    base = base_of(given.cache)
+    first, last = (int(part) if part else None for part in given.cases.split(":"))
+    verdicts = []
+    print("| hidden | drawn | verdict | names | | gap, ° (floor) | s |\n|---|---|---|---|---|---|---|", flush=True)
+    for case in cases(given.seed)[first:last]:
+        began = time.perf_counter()
+        with tempfile.TemporaryDirectory() as folder:
+            settings = LoopSettings(Path(folder, "loop"), samples=given.samples, rounds=given.rounds)
+            loop = explain_loop(settings, TwinLab(base, case.twin, given.seed, given.film), base, explained)
+        verdicts.append(judged(case, loop.explanation))
+        print(told(case, loop.explanation, time.perf_counter() - began), flush=True)
+    print({word: verdicts.count(word) for word in sorted(set(verdicts))})
+
+
+if __name__ == "__main__":
+    main()

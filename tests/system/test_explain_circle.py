@@ -1,0 +1,70 @@
+"""The whole circle on films: an effect hidden in the twin → protocol → run → drawn film → `benchlab analyze` → explained from the tables alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchlab.discrepancy.effects.catalogue import effects
+from benchlab.discrepancy.explain import explain
+from benchlab.discrepancy.explanation import Explanation
+from benchlab.discrepancy.measured import Measured
+from benchlab.io.measured_table import read_measured
+from benchlab.io.twin_file import read_twin
+from benchlab.twin.effects.catalogue import EFFECTS
+from benchlab.twin.settings import Camera
+from benchlab.workflows.explain_loop import Loop, LoopSettings, explain_loop
+from benchlab.workflows.explain_twin import TwinLab
+from tests.unit.discrepancy.scenes import base
+
+SEED = 11
+PROTOCOL = """\
+title: One cycle
+limit_MPa: 0.35
+segments:
+  - trigger: camera
+  - triangle: {low_MPa: 0, high_MPa: 0.35, rate_MPa_per_s: 0.14, cycles: 1}
+  - vent: {duration_s: 1}
+"""
+HIDDEN = {"dead_pressure": ("dead_MPa", 0.03, 0.05), "regulator_lag": ("lag_s", 0.4, 0.6)}
+
+
+def circle(folder: Path, name: str, film: bool) -> Loop:
+    """Two designs, three samples of each, an effect whose size is drawn."""
+    protocol = folder / "cycle.yaml"
+    protocol.write_text(PROTOCOL)
+    parameter, low, high = HIDDEN[name]
+    size = float(np.random.default_rng(SEED).uniform(low, high))
+    hidden = replace(
+        read_twin(None),
+        effects={name: EFFECTS[name](**{parameter: size})},
+        camera=Camera(frames_per_s=10, width_px=480, height_px=360),
+    )
+    settings = LoopSettings(folder / "loop", samples=3, rounds=1, protocol=protocol)
+    return explain_loop(settings, TwinLab(base(2), hidden, SEED, film), base(2), explained)
+
+
+def explained(tables: list[Path], known: object) -> Explanation:
+    return explain(read_measured(tables), known, effects(), seed=1).explanation  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("name", "film"), [("dead_pressure", True), ("regulator_lag", False)])
+def test_an_effect_hidden_in_the_twin_is_found(name: str, film: bool, tmp_path: Path) -> None:
+    loop = circle(tmp_path, name, film)
+    found = loop.explanation
+    sets = [{effect.name for effect in found.effects}] if found.verdict == "named" else [set(s) for s in found.rivals]
+    assert any(name in names for names in sets), (found.verdict, sets)
+    assert found.gap.rmse_after < 0.5 * found.gap.rmse_before
+    check_tables(loop.rounds[0].round.folder, film)
+
+
+def check_tables(folder: Path, film: bool) -> None:
+    """They are of the camera's frames, not of the truth."""
+    measured = read_measured([folder / "measured.csv"])
+    assert isinstance(measured, Measured) and measured.simulated and len(measured.runs) == 6
+    assert not list(folder.rglob("*.truth.csv"))
+    assert len(list((folder / "seen").glob("*.h5"))) == 6 * film
+    assert all(np.diff(run.time_s) == pytest.approx(0.1, abs=1e-3) for run in measured.runs)
