@@ -67,13 +67,14 @@ def find_columns(
     columns: Mapping[str, str] | None = None,
     against: Sequence[str] = (),
     passed_over: tuple[str, ...] = ("measured",),
+    may_be_data: bool = True,
 ) -> Columns:
     """The columns of a header, or of a first row of data. columns: names of ours with their unit, and the column or its place from 1.
 
     Raises UsageError for a column that is not there, or that is not one of ours; InputError for a unit that is missing or of another
     quantity, and for two columns of one quantity.
     """
-    if headless := all(_is_number(cell) for cell in header if cell):
+    if headless := may_be_data and any(header) and all(_is_number(cell) for cell in header if cell):
         if not columns:
             hint = "name the columns by their places, as --columns force_N=1,pressure_kPa=2,time_s=3"
             raise InputError("no header: the first row holds numbers", file=source, hint=hint)

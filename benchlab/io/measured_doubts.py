@@ -26,21 +26,30 @@ EXACT, ALIKE = 0.005, 0.25
 def unit_jumps(runs: Sequence[Run]) -> Iterator[str]:
     """Runs whose largest value is by such a factor larger or smaller than that of most runs.
 
-    The pressure is compared over all runs; other quantities over those of a design that reach about the same pressure.
+    The pressure is compared over all runs; other quantities over those of a design that reach about the pressure that most of them reach.
     """
-    top = [float(np.max(np.abs(run.pressure_MPa))) for run in runs]
-    usual = float(np.median(top))
-    for run, reached in zip(runs, top):
-        yield from _told(run, "pressure_MPa", reached, usual, EXACT)
-    for quantity, design in itertools.product(list(FACTORS)[1:], sorted({run.design for run in runs})):
-        largest = {
-            at: np.nanmax(np.abs(r.values[quantity]))
-            for at, r in enumerate(runs)
-            if r.design == design and quantity in r.values
-        }
-        for at, value in largest.items():
-            others = [each for other, each in largest.items() if abs(top[other] - top[at]) <= ALIKE * top[at]]
-            yield from _told(runs[at], quantity, float(value), float(np.median(others)), ALIKE)
+    yield from _odd(runs, "pressure_MPa", [_largest(run, "pressure_MPa") for run in runs], EXACT)
+    designs: dict[str, list[Run]] = {}
+    for run in runs:
+        designs.setdefault(run.design, []).append(run)
+    for quantity, design in itertools.product(list(FACTORS)[1:], sorted(designs)):
+        measured = [run for run in designs[design] if quantity in run.values]
+        top = np.array([_largest(run, "pressure_MPa") for run in measured])
+        alike = (
+            [run for run, near in zip(measured, np.abs(top / np.median(top) - 1) <= ALIKE) if near] if len(top) else []
+        )
+        yield from _odd(alike, quantity, [_largest(run, quantity) for run in alike], ALIKE)
+
+
+def _largest(run: Run, quantity: str) -> float:
+    values = run.pressure_MPa if quantity == "pressure_MPa" else run.values[quantity]
+    return float(np.nanmax(np.abs(values)))
+
+
+def _odd(runs: Sequence[Run], quantity: str, largest: Sequence[float], near: float) -> Iterator[str]:
+    usual = float(np.median(largest)) if runs else 0.0
+    for run, value in zip(runs, largest):
+        yield from _told(run, quantity, value, usual, near)
 
 
 def _told(run: Run, quantity: str, value: float, usual: float, near: float) -> Iterator[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -157,7 +157,7 @@ def _design_names(frame: pandas.DataFrame, source: str, word: str) -> list[str]:
 
 
 def _check_names(rows: Rows) -> None:
-    """No empty name; names that differ only in case are told, not taken as one."""
+    """No empty name; names that differ only in case, or in how a number is written, are told, not taken as one."""
     for each in NAMES:
         texts = rows.frame[each]
         empty = (texts == "").to_numpy()
@@ -166,9 +166,16 @@ def _check_names(rows: Rows) -> None:
             raise rows.refused(f"no {each}", int(np.argmax(empty)), hint)
         seen: dict[str, str] = {}
         for text in map(str, texts.cat.categories):
-            other = seen.setdefault(text.casefold(), text)
+            other = seen.setdefault(_alike(text), text)
             if other != text:
                 rows.warnings.append(f"{each}s {printable(other)!r} and {printable(text)!r} are taken as two")
+
+
+def _alike(text: str) -> str:
+    try:
+        return f"{float(text):g}"
+    except ValueError:
+        return text.casefold()
 
 
 def _check_numbers(rows: Rows) -> None:
@@ -218,7 +225,7 @@ def without_gaps(rows: Rows) -> Rows:
         if missing.any():
             first = frame.index[missing].min()
             warnings.append(f"{key} is missing in {missing.sum()} of {len(frame)} rows, the first {rows.word} {first}")
-    return Rows(frame, rows.source, rows.word, rows.x, rows.against, rows.simulated, warnings)
+    return replace(rows, frame=frame)
 
 
 def _without_doubtful(frame: pandas.DataFrame, warnings: list[str]) -> pandas.DataFrame:

@@ -6,6 +6,7 @@ Nothing here depends on the order of rows; where a time went back in a file that
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,6 +31,9 @@ averaged. More is no clock, but rows of two runs under one name. Both chosen."""
 MOST_BACK = 0.1
 """A file whose time goes back at more of its rows is in no order of time, and none is expected of it."""
 
+MOST_TOLD = 5
+"""Warnings of one kind that are told one by one."""
+
 NO_TIME = "no column of time: rows are in the order of their pressure, and nothing can be said of direction, rate, order or creep"
 
 
@@ -45,9 +49,11 @@ def runs_of(rows: Rows) -> tuple[list[Run], list[str]]:
     told += _back_in_time(rows) if "time_s" in frame else []
     found: list[Run] = []
     empty: list[Run] = []
+    repeats = _Repeats()
     for name, part in _groups(frame):
-        run = _run(Rows(part, rows.source, rows.word, rows.x, rows.against, rows.simulated, told), name)
+        run = _run(replace(rows, frame=part), name, repeats)
         (found if run.values else empty).append(run)
+    told += repeats.words()
     if empty:
         told.append(f"{counted(len(empty), 'run')} without a value left out, the first {_words(empty[0])}")
     if not found:
@@ -66,9 +72,15 @@ def measured_of_runs(
         if other != file:
             hint = f"it is in {printable(other)} too: give one of them another name, or leave it out"
             raise InputError(f"{_words(run)} stands in two files", file=file, hint=hint)
-    told = [*dict.fromkeys(warnings), *unit_jumps(runs), *copies(runs), *_few(runs)]
+    told = [*dict.fromkeys(warnings), *_first(unit_jumps(runs)), *_first(copies(runs)), *_few(runs)]
     order = sorted(runs, key=lambda run: (run.design, run.sample, _number(run.run_index), run.run))
     return Measured(tuple(order), source, simulated, tuple(told))
+
+
+def _first(words: Iterable[str]) -> list[str]:
+    """The first few of what could be said of each run, and how many more there are."""
+    found = list(words)
+    return [*found[:MOST_TOLD], *([f"and of {len(found) - MOST_TOLD} runs more"] if len(found) > MOST_TOLD else [])]
 
 
 def _words(run: Run) -> str:
@@ -117,8 +129,8 @@ def _key(frame: pandas.DataFrame) -> NDArray[np.int64]:
     return np.unique(key, return_inverse=True)[1]
 
 
-def _run(rows: Rows, name: tuple[str, str, str]) -> Run:
-    rows = _each_time_once(rows, name)
+def _run(rows: Rows, name: tuple[str, str, str], repeats: _Repeats) -> Run:
+    rows = _each_time_once(rows, name, repeats)
     frame = rows.frame
     told = {key: frame[key].to_numpy(dtype=float) for key in frame if frame[key].dtype == float}
     values = {key: told[key] for key in values_in(told) if np.isfinite(told[key]).any()}
@@ -171,8 +183,22 @@ def _word(rows: Rows, key: str, name: tuple[str, str, str]) -> str:
     return str(texts[0])
 
 
-def _each_time_once(rows: Rows, name: tuple[str, str, str]) -> Rows:
-    """The rows with each time once: equal rows are one, and the few times that a clock repeats are averaged; both are told.
+@dataclass
+class _Repeats:
+    """How many rows of which run repeat another one, or its time."""
+
+    equal: dict[str, int] = field(default_factory=dict)
+    averaged: dict[str, int] = field(default_factory=dict)
+
+    def words(self) -> Iterator[str]:
+        for counts, what in ((self.equal, "equal rows counted once"), (self.averaged, "rows of one time averaged")):
+            if counts:
+                more = f" and {counted(len(counts) - 1, 'other run')}" if len(counts) > 1 else ""
+                yield f"{what}: {sum(counts.values())}, in {next(iter(counts))}{more}"
+
+
+def _each_time_once(rows: Rows, name: tuple[str, str, str], repeats: _Repeats) -> Rows:
+    """The rows with each time once: equal rows are one, and the few times that a clock repeats are averaged; both are noted.
 
     Raises InputError, with both lines, where rows of one time differ by more.
     """
@@ -183,14 +209,14 @@ def _each_time_once(rows: Rows, name: tuple[str, str, str]) -> Rows:
     single = frame.drop_duplicates(subset=measured)
     of = f"run {printable(name[2])} of {printable(name[0])} {printable(name[1])}"
     if len(single) < len(frame):
-        rows.warnings.append(f"{counted(len(frame) - len(single), 'row')} of {of} stand twice: counted once")
+        repeats.equal[of] = len(frame) - len(single)
     time = single["time_s"].to_numpy()
     again = np.flatnonzero(np.diff(time) == 0)
     if len(again):
         _check_clock(rows, single, again, of)
-        rows.warnings.append(f"{counted(len(again), 'row')} of {of} repeat a time: averaged with the row before")
+        repeats.averaged[of] = len(again)
         single = _averaged(single)
-    return Rows(single, rows.source, rows.word, rows.x, rows.against, rows.simulated, rows.warnings)
+    return replace(rows, frame=single)
 
 
 def _check_clock(rows: Rows, frame: pandas.DataFrame, again: np.ndarray, of: str) -> None:

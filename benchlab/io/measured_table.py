@@ -65,7 +65,7 @@ def measured_of_frame(
     [0.0, 0.35]
     """
     header = [str(label).strip() for label in frame.columns]
-    found = find_columns(header, source, columns, against)
+    found = find_columns(header, source, columns, against, may_be_data=False)
     data: dict[str, Any] = {}
     for key, column in found.read.items():
         values = frame.iloc[:, column.index]

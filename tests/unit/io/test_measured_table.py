@@ -191,7 +191,7 @@ def test_one_time_with_two_values_is_refused(tmp_path: Path) -> None:
 def test_equal_rows_count_once(tmp_path: Path) -> None:
     table = pandas.concat([tidy(), tidy().iloc[[1]]])
     found = read(tmp_path, table)
-    assert same(found, read(tmp_path, tidy())) and "1 row of run r1 of a s1 stand twice: counted once" in found.warnings
+    assert same(found, read(tmp_path, tidy())) and "equal rows counted once: 1, in run r1 of a s1" in found.warnings
 
 
 def test_a_clock_may_repeat_a_time(tmp_path: Path) -> None:
@@ -440,3 +440,20 @@ def test_a_column_called_like_an_effect_says_nothing(tmp_path: Path) -> None:
     run = read(tmp_path, table, against=["friction", "temperature"]).runs[0]
     assert run.against["friction"][0] == 0.2 and run.temperature_C is None  # type: ignore[comparison-overlap]
     assert "'angle_deg' is read anyway" in refusal(tmp_path, table, against=["angle_deg"]).what
+
+
+def test_many_runs_of_one_doubt_are_told_together(tmp_path: Path) -> None:
+    table = tidy()
+    found = read(tmp_path, pandas.concat([table, table]))
+    assert found.warnings == ("equal rows counted once: 32, in run r1 of a s1 and 7 other runs",)
+    copied = pandas.concat([table, *(table.assign(sample=table["sample"] + str(n)) for n in range(2))])
+    told = [words for words in read(tmp_path, copied).warnings if "cop" in words or "more" in words]
+    assert len(told) == 6 and told[-1] == "and of 11 runs more"
+
+
+def test_a_frame_whose_columns_are_numbers() -> None:
+    frame = pandas.DataFrame({0: [0.0, 0.1], 7: [1.0, 2.0]})
+    (run,) = measured_of_frame(frame, "frame", {"pressure_MPa": "0", "angle_deg": "7"}).runs  # type: ignore[union-attr]
+    assert run.pressure_MPa.tolist() == [0, 0.1] and run.values["angle_deg"].tolist() == [1, 2]
+    with pytest.raises(InputError, match="no data rows"):
+        measured_of_frame(pandas.DataFrame(), "frame")
