@@ -1,15 +1,16 @@
 """softening: the film is stiff the first time and softer ever after, up to the largest strain so far (Mullins).
 
-    E → E·(1 − d·D)          D = (1 − u/m)·G·2, at most G (plain)          G = 1 − exp(−N/n)          N = W/(2m)
+    E → E·(1 − d·D)          D = (1 − (u/m)²)·G (plain)          G = 1 − exp(−N/n)          N = W/(2m)
 
 d `softer`: share of the film's stiffness that is lost; n `cycles`: number in which it goes; u: angle of the base at
 this pressure, the measure of strain; m: the largest so far, on the sample where the order of its runs is known; W:
 way gone below it, to and fro (moves under 3 % of m do not count), N: as many cycles to m. The base is a virgin film,
-as a tension test to rupture has it. Forms: `plain`: nothing is lost at the largest strain, all of it at half and
-below (after Ogden and Roxburgh's idea, the straight line is chosen); `cycle by cycle`: D = G, so that each loading to
-m goes farther than the last; `largest so far`: D = m/M, M the base's at its highest pressure, and softens from the
-first loading on; `run in`: the base is a film that was cycled, D = G − 1, and the first loading is stiffer. It acts
-through the knob `film_modulus` where the base has it, else on the angle as θ/(1 − d·D).
+as a tension test to rupture has it. Forms: `plain`: nothing is lost at the largest strain, all of it far below
+(pseudo-elastic as Ogden and Roxburgh's, with u² for the energy; the straight line in it is chosen); `cycle by cycle`:
+D = G, so that each loading to m goes farther than the last; `largest so far`: D = m/M, M the base's at its highest
+pressure, and softens from the first loading on; `run in`: the base is a film that was cycled, D = G − 1, and the
+first loading is stiffer. It acts through the knob `film_modulus` where the base has it, else on the angle as θ/(1 −
+d·D).
 By nature confounded: with friction where each sample is loaded once; with viscoelasticity where there is one rate and
 no hold.
 """
@@ -81,7 +82,7 @@ def _damage(at: At) -> FloatArray:
         return gone
     if at.form == "run in":
         return gone - 1
-    return np.minimum(2 * (1 - strain / largest), 1.0) * gone
+    return (1 - (strain / largest) ** 2) * gone
 
 
 def _cycles_below(scene: Scene, strain: FloatArray, largest: FloatArray) -> FloatArray:

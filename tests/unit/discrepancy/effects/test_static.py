@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.optimize import least_squares
 
+from benchlab.discrepancy.base import Base
 from benchlab.discrepancy.effects.camera_tilt import seen_over_true
 from benchlab.discrepancy.effects.catalogue import built_in
 from benchlab.discrepancy.effects.effect import Active, At
 from benchlab.discrepancy.effects.gravity import torque
 from benchlab.discrepancy.predict import predict
 from benchlab.discrepancy.scene import Scene
-from tests.unit.discrepancy.scenes import scene
+from tests.unit.discrepancy.scenes import base, scene
 
 EFFECTS = built_in()
 
@@ -100,6 +103,18 @@ def test_weight_pulls_down_by_attitude() -> None:
     assert np.array_equal(change("standing"), standing)
     assert np.array_equal(change("level, bending up"), change(orientation_deg=90))
     assert np.array_equal(change("standing", 0), hanging), "what is told counts"
+
+
+def test_half_the_length_is_a_quarter_of_the_weights_moment() -> None:
+    """Half the weight at half the lever."""
+    long = base(1)
+    short = {n: replace(d, shape=replace(d.shape, length_mm=90.0)) for n, d in long.designs.items() if d.shape}
+
+    def change(on: Base) -> np.ndarray:
+        runs = scene(("slow",), 1, on=on)
+        return predicted("gravity", runs, weight_MPa=0.005) - bare(runs)
+
+    np.testing.assert_allclose(change(replace(long, designs=short)), change(long) / 4, atol=1e-12)
 
 
 def test_weight_is_a_pressure_for_small_weights() -> None:
