@@ -121,10 +121,11 @@ class Experiment:
 
 @dataclass(frozen=True)
 class BenchLimits:
-    """What may be asked for. rate_MPa_s: fastest ramp. sample_s: longest time that a sample may be on the bench, rests included.
+    """What may be asked for; the defaults are chosen but for the pressure, which is the paper's.
 
-    mounting_deg: as samples are mounted now. can_turn: whether they can be mounted in another way. other_length: whether samples of
-    another length can be made. The defaults are chosen but for the pressure, which is the paper's.
+    rate_MPa_s: fastest ramp. sample_s: longest time that a sample may be on the bench, rests included. mounting_deg: as samples are
+    mounted now. can_turn: whether they can be mounted in another way. other_length: whether samples of another length can be made.
+    remembers: whether a sample keeps what earlier runs did to it, as a twin does not.
     """
 
     pressure_MPa: float = 0.35
@@ -133,3 +134,4 @@ class BenchLimits:
     mounting_deg: float = 0.0
     can_turn: bool = True
     other_length: bool = True
+    remembers: bool = True

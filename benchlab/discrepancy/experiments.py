@@ -21,7 +21,7 @@ SHORT, LONG = 0.5, 2.0
 def family(limits: BenchLimits) -> tuple[Experiment, ...]:
     """All that the bench can do, the plain ones first; those that take a sample longer than limits.sample_s are left out."""
     plain = tuple(_plain(limits))
-    found = [*plain, *_again(plain)]
+    found = [*plain, *(_again(plain) if limits.remembers else ())]
     if limits.can_turn:
         found += _turned(plain, limits.mounting_deg)
     if limits.other_length:

@@ -86,11 +86,11 @@ def proposal(
 ) -> Proposal:
     """The experiment of the family that separates the closest pair of rivals best; of those nearly as good, the one with least effort.
 
-    designs: on which it is run. noise: covariance of the means over the samples that there will be. With fewer than two rivals it is the
-    default experiment. Where nothing reaches LEAST_SD, `told.cannot` says so, and what would.
+    designs: on which it is run. noise: covariance of the means over the samples that there will be. With fewer than two rivals, or no
+    design, it is the default experiment. Where nothing reaches LEAST_SD, `told.cannot` says so, and what would.
     """
     limits = _within(limits or BenchLimits(), base, designs)
-    if len(rivals) < 2:
+    if len(rivals) < 2 or not designs:
         return default_proposal(limits)
     experiments = [one for one in family(limits) if quantity != "force_N" or one.length_ratio == 1]
     plain = [one for one in experiments if not _asks_more(one)]

@@ -29,7 +29,7 @@ STEPS = 3
 
 @dataclass(frozen=True)
 class Rival:
-    """Effects with their fitted values. covariance: (P, P) of their parameters in order, by the data so far; None: unknown."""
+    """Effects with their fitted values. covariance: (P, P) of their parameters by the data so far; None, or not finite: unknown."""
 
     actives: tuple[Active, ...]
     covariance: FloatArray | None = None
@@ -67,7 +67,7 @@ class Rival:
     def known(self) -> FloatArray:
         """(P, P) rows whose squares sum to how unlikely a change of the parameters is, by the data so far."""
         low, high = self.bounds
-        if self.covariance is None:
+        if self.covariance is None or not np.isfinite(self.covariance).all():
             return np.diag(1 / np.maximum(WIDE * (high - low), 1e-12))
         scale = np.where(high > low, high - low, 1.0)
         size, axes = np.linalg.eigh(self.covariance / np.outer(scale, scale))

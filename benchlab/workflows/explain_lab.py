@@ -47,13 +47,17 @@ class Wanted:
 
 
 class Lab(Protocol):
-    """origin: where its numbers are from, as tables say it. about: the same in words, with what was chosen."""
+    """origin: where its numbers are from, as tables say it. about: the same in words, with what was chosen. remembers: whether its samples
+    keep what earlier runs did to them."""
 
     @property
     def origin(self) -> str: ...
 
     @property
     def about(self) -> str: ...
+
+    @property
+    def remembers(self) -> bool: ...
 
     def measure(self, wanted: Wanted) -> Run:
         """Make the run; its drive file lies in the folder. Raises BenchError where it did not go to its end, KeyboardInterrupt where

@@ -27,8 +27,8 @@ from benchlab.workflows.explain_twin import TwinLab
 from benchlab.workflows.open_bench import spec_of
 from benchlab.workflows.run_prepare import RunSettings
 
-Explainer = Callable[[Sequence[Path], Base], Explanation]
-"""Explains tables of runs, against the base."""
+Explainer = Callable[[Sequence[Path], Base, BenchLimits], Explanation]
+"""Explains tables of runs, against the base, and proposes what this bench can do."""
 
 RECORD = "loop.json"
 """What was done so far: settings, rounds, verdicts."""
@@ -138,8 +138,8 @@ def explain_loop(
     settings.check()
     make_folder(settings.out)
     begun = _begin(settings, lab)
-    began, designs = clock(), tuple(base.designs)
-    proposed = NextExperiment("", "", math.nan, experiment=default_experiment(_within(settings.limits, base)))
+    began, designs, limits = clock(), tuple(base.designs), _within(settings.limits, base, lab)
+    proposed = NextExperiment("", "", math.nan, experiment=default_experiment(limits))
     rounds: list[Told] = []
     known, runs_before = base, 0
     for number in range(1, settings.rounds + 1):
@@ -149,7 +149,7 @@ def explain_loop(
         known = known if ratio == 1 else with_length(known, designs, ratio)
         runs_before += len(one.experiment.mountings_deg) * (ratio == 1)
         tell(f"round {number}: explaining")
-        explanation = explainer([*(told.round.table for told in rounds), one.table], known)
+        explanation = explainer([*(told.round.table for told in rounds), one.table], known, limits)
         rounds.append(Told(one, explanation))
         ended, settled = _end(explanation, number, settings, clock() - began)
         loop = Loop(tuple(rounds), ended, settled, lab.about, lab.origin)
@@ -187,9 +187,10 @@ def _round(settings: LoopSettings, number: int, proposed: NextExperiment) -> Rou
     return Round(number, folder, Path(write_next(folder, proposed).protocol), proposed.experiment)
 
 
-def _within(limits: BenchLimits, base: Base) -> BenchLimits:
+def _within(limits: BenchLimits, base: Base, lab: Lab) -> BenchLimits:
+    """Not beyond where the simulation ends, and what the lab can show."""
     top = min([limits.pressure_MPa, *(base.largest_pressure_MPa(name) for name in base.designs)])
-    return replace(limits, pressure_MPa=top)
+    return replace(limits, pressure_MPa=top, remembers=limits.remembers and lab.remembers)
 
 
 def _begin(settings: LoopSettings, lab: Lab) -> dict[str, Any]:

@@ -19,6 +19,7 @@ class MountedLab:
     KeyboardInterrupt. The angle is that of the bench's flex sensor. Clock of start_s: since this lab was opened."""
 
     origin = "bench"
+    remembers = True
 
     def __init__(self, settings: RunSettings, ask: Callable[[str], object]) -> None:
         self.settings, self.ask = settings, ask

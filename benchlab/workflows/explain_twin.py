@@ -59,6 +59,7 @@ class TwinLab:
     """
 
     origin = "simulated (twin)"
+    remembers = False
 
     def __init__(
         self, base: Base, hidden: TwinSettings, seed: int = 1, film: bool = False, scatter: Scatter | None = None

@@ -18,8 +18,7 @@ import numpy as np
 
 from benchlab.actuator import ShellDesign
 from benchlab.discrepancy.base import Base
-from benchlab.discrepancy.effects.catalogue import effects
-from benchlab.discrepancy.explain import explain
+from benchlab.discrepancy.experiment import BenchLimits
 from benchlab.discrepancy.explanation import Explanation
 from benchlab.io.layup_file import read_layup
 from benchlab.io.measured_table import read_measured
@@ -28,9 +27,10 @@ from benchlab.twin.effects.catalogue import EFFECTS
 from benchlab.twin.settings import Camera, TwinSettings
 from benchlab.workflows.explain_base import base_pressures, cell_base
 from benchlab.workflows.explain_loop import LoopSettings, explain_loop
+from benchlab.workflows.explain_measured import explain_measured
 from benchlab.workflows.explain_twin import TwinLab
 
-SHAPES = ((3, 10), (3, 5), (3, 20), (9, 10))
+SHAPES = ((3, 10), (3, 5), (9, 10))
 """(tw, slw) in mm."""
 
 DRAWN: dict[str, dict[str, tuple[float, float]]] = {
@@ -87,8 +87,8 @@ def base_of(cache: Path, shapes: Sequence[tuple[float, float]] = SHAPES) -> Base
     return cell_base({one.name: one for one in designs}, layup, base_pressures(0.35), forces=False, jobs=2, cache=cache)
 
 
-def explained(tables: Sequence[Path], base: Base) -> Explanation:
-    return explain(read_measured(tables), base, effects(), seed=1).explanation
+def explained(tables: Sequence[Path], base: Base, limits: BenchLimits) -> Explanation:
+    return explain_measured(read_measured(tables), base, seed=1, limits=limits).explanation
 
 
 def judged(case: Case, found: Explanation) -> str:
@@ -117,7 +117,7 @@ def main() -> None:
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--cases", default=":")
     options.add_argument("--seed", type=int, default=7)
-    options.add_argument("--samples", type=int, default=4)
+    options.add_argument("--samples", type=int, default=3)
     options.add_argument("--rounds", type=int, default=1)
     options.add_argument("--film", action="store_true")
     options.add_argument("--cache", type=Path, default=Path(tempfile.gettempdir()) / "benchlab-circle")

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from benchlab.discrepancy.effects.catalogue import effects
-from benchlab.discrepancy.explain import explain
+from benchlab.discrepancy.base import Base
+from benchlab.discrepancy.experiment import BenchLimits
 from benchlab.discrepancy.explanation import Explanation
 from benchlab.discrepancy.measured import Measured
 from benchlab.io.measured_table import read_measured
@@ -17,6 +18,7 @@ from benchlab.io.twin_file import read_twin
 from benchlab.twin.effects.catalogue import EFFECTS
 from benchlab.twin.settings import Camera
 from benchlab.workflows.explain_loop import Loop, LoopSettings, explain_loop
+from benchlab.workflows.explain_measured import explain_measured
 from benchlab.workflows.explain_twin import TwinLab
 from tests.unit.discrepancy.scenes import base
 
@@ -47,8 +49,8 @@ def circle(folder: Path, name: str, film: bool) -> Loop:
     return explain_loop(settings, TwinLab(base(2), hidden, SEED, film), base(2), explained)
 
 
-def explained(tables: list[Path], known: object) -> Explanation:
-    return explain(read_measured(tables), known, effects(), seed=1).explanation  # type: ignore[arg-type]
+def explained(tables: Sequence[Path], known: Base, limits: BenchLimits) -> Explanation:
+    return explain_measured(read_measured(tables), known, seed=1, limits=limits).explanation
 
 
 @pytest.mark.parametrize(("name", "film"), [("dead_pressure", True), ("regulator_lag", False)])

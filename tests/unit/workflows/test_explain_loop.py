@@ -11,6 +11,7 @@ import pytest
 
 from benchlab.discrepancy.base import Base
 from benchlab.discrepancy.experiment import BenchLimits, Experiment, Triangle
+from benchlab.discrepancy.experiments import family
 from benchlab.discrepancy.explanation import Explanation
 from benchlab.discrepancy.measured import Measured, Run
 from benchlab.errors import UsageError
@@ -33,7 +34,7 @@ TURNED = Experiment("turned", "one cycle, turned", (Triangle(0, 0.3, 0.1),), mou
 class FakeLab:
     """Gives a straight line for each run. broken_at: the run, from 1, that somebody ends."""
 
-    origin, about = "simulated (twin)", "made up"
+    origin, about, remembers = "simulated (twin)", "made up", False
 
     def __init__(self, broken_at: int = 0) -> None:
         self.asked: list[Wanted] = []
@@ -54,9 +55,11 @@ class Told:
     def __init__(self, *says: Explanation) -> None:
         self.says = list(says)
         self.given: list[tuple[list[Path], Base]] = []
+        self.limits: BenchLimits | None = None
 
-    def __call__(self, tables: Sequence[Path], known: Base) -> Explanation:
+    def __call__(self, tables: Sequence[Path], known: Base, limits: BenchLimits) -> Explanation:
         self.given.append((list(tables), known))
+        self.limits = limits
         return self.says[len(self.given) - 1]
 
 
@@ -159,9 +162,12 @@ def test_the_record_tells_the_rounds(tmp_path: Path) -> None:
     assert record["settings"]["measured_on"] == "made up"
 
 
-def test_the_first_protocol_keeps_to_the_bench(tmp_path: Path) -> None:
-    found = loop(tmp_path, Told(explanation("agree")), limits=BenchLimits(pressure_MPa=0.2))
+def test_the_first_protocol_and_what_is_proposed_keep_to_the_bench(tmp_path: Path) -> None:
+    explainer = Told(explanation("agree"))
+    found = loop(tmp_path, explainer, limits=BenchLimits(pressure_MPa=0.2, can_turn=False))
     assert max(found.rounds[0].round.experiment.trace()[1]) == 0.2
+    assert explainer.limits == BenchLimits(pressure_MPa=0.2, can_turn=False, remembers=False)
+    assert not any(len(each.mountings_deg) > 1 for each in family(explainer.limits))
 
 
 @pytest.mark.parametrize("wrong", [{"samples": 0}, {"rounds": 21}, {"minutes": 0.0}])
