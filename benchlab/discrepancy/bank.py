@@ -145,3 +145,13 @@ def _feature_base(problem: Problem) -> FloatArray:
     number = np.bincount(problem.features.feature, minlength=len(problem.features.features))
     total = np.bincount(problem.features.feature, cells, minlength=len(number))
     return np.asarray(total / np.maximum(number, 1))
+
+
+def principal(directions: FloatArray, share: float = 0.05) -> FloatArray:
+    """(C, K) → (C, q): orthonormal directions that span them, but for those that are weaker than a share of the strongest."""
+    sizes = np.sqrt((directions**2).sum(axis=0))
+    kept = directions[:, sizes > 1e-3] / sizes[sizes > 1e-3]
+    if kept.shape[1] == 0:
+        return kept
+    basis, strength, _ = np.linalg.svd(kept, full_matrices=False)
+    return np.asarray(basis[:, strength > share * strength[0]])

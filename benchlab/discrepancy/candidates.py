@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
 from scipy import stats
 
-from benchlab.discrepancy.bank import Bank
+from benchlab.discrepancy.bank import Bank, principal
 from benchlab.discrepancy.effects.effect import Active
 from benchlab.discrepancy.fit import Fit, fit
 from benchlab.discrepancy.problem import Problem, off
@@ -20,14 +19,7 @@ def reach(bank: Bank, residual: FloatArray, tangent: FloatArray) -> dict[str, fl
     free = off(bank.directions, tangent)
     out = {}
     for name in dict.fromkeys(active.name for active in bank.actives):
-        mine = free[:, [i for i, active in enumerate(bank.actives) if active.name == name]]
-        sizes = np.sqrt((mine**2).sum(axis=0))
-        mine = mine[:, sizes > 1e-3] / sizes[sizes > 1e-3]
-        if mine.shape[1] == 0:
-            out[name] = 0.0
-            continue
-        basis, strength, _ = np.linalg.svd(mine, full_matrices=False)
-        basis = basis[:, strength > 0.05 * strength[0]]
+        basis = principal(free[:, [i for i, active in enumerate(bank.actives) if active.name == name]])
         out[name] = float(((basis.T @ residual) ** 2).sum())
     return out
 
@@ -60,9 +52,10 @@ def p_enough(problem: Problem, candidate: Fit, best: Fit) -> tuple[float, float]
     return float(stats.t.sf(t, problem.freedom)), t
 
 
-def in_set(problem: Problem, candidate: Fit, best: Fit, rules: Rules) -> bool:
-    """Whether the data cannot tell the candidate from the best one."""
-    if candidate is best or candidate.misfit - best.misfit < rules.close:
+def in_set(problem: Problem, candidate: Fit, best: Fit, bare: Fit, rules: Rules) -> bool:
+    """Whether the data cannot tell the candidate from the best one. bare: the base alone."""
+    close = max(rules.close, rules.alike * (bare.misfit - best.misfit))
+    if candidate is best or candidate.misfit - best.misfit < close:
         return True
     return p_enough(problem, candidate, best)[1] < rules.rival_t
 

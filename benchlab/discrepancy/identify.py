@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from benchlab.discrepancy.bank import DRAWS, Bank, bank_of, flexible, scan
+from benchlab.discrepancy.bank import DRAWS, Bank, bank_of, flexible, principal, scan
 from benchlab.discrepancy.candidates import best_starts, distinct, fits_with, in_set, p_enough, reach
 from benchlab.discrepancy.effects.effect import Effect
 from benchlab.discrepancy.fit import Fit, fit, nothing
@@ -72,7 +72,7 @@ def identify(
     best = tried[0]
     p_left = scan(problem, anything, best.residual, best.tangent, noise, rules.multiplier).p
     share = share_explained(problem, bare, best)
-    rivals = tuple(one for one in tried if in_set(problem, one, best, rules))
+    rivals = tuple(one for one in tried if in_set(problem, one, best, bare, rules))
     verdict = "named" if len(rivals) == 1 else "ambiguous"
     notes: tuple[str, ...] = ()
     if p_left < rules.adequate:
@@ -109,11 +109,12 @@ def _extended(
 
 
 def _left(problem: Problem, best: Fit, bank: Bank, noise: FloatArray, rules: Rules) -> float:
-    """p of no further effect of the vocabulary."""
+    """p of no further effect of the vocabulary, beside all that the effects of the model could do in other forms and strengths."""
     others = bank.of([name for name in dict.fromkeys(a.name for a in bank.actives) if name not in best.names])
     if not others.actives:
         return 1.0
-    return scan(problem, others.directions, best.residual, best.tangent, noise, rules.multiplier).p
+    own = np.concatenate([best.tangent, principal(bank.of(best.names).directions)], axis=1)
+    return scan(problem, others.directions, best.residual, own, noise, rules.multiplier).p
 
 
 def _worth(problem: Problem, more: Fit, best: Fit, rules: Rules) -> bool:

@@ -13,8 +13,8 @@ from benchlab.units import FloatArray
 LEVEL = 0.95
 
 
-def standard_errors(problem: Problem, fit: Fit) -> FloatArray:
-    """(q,): of the scaled parameters; covariance H⁻¹ M H⁻¹ with the scores' scatter between samples M, moderated by the fitted scatter H
+def covariance(problem: Problem, fit: Fit) -> FloatArray:
+    """(q, q): of the parameters, in their units: H⁻¹ M H⁻¹ with the scores' scatter between samples M, moderated by the fitted scatter H
     (sandwich estimate; White 1982, samples as clusters)."""
     tangent = fit.tangent
     hessian = tangent.T @ tangent
@@ -26,9 +26,11 @@ def standard_errors(problem: Problem, fit: Fit) -> FloatArray:
     weighted = deviation * np.sqrt(np.where(several, n / np.maximum(n - 1, 1), 0.0))[:, None]
     freedom = problem.scatter.freedom
     own = weighted.T @ weighted * (problem.samples / max(int(several.sum()), 1))
-    meat = (PRIOR_FREEDOM * hessian + freedom * own) / (PRIOR_FREEDOM + freedom)
+    meat = (PRIOR_FREEDOM * problem.scatter_meat(tangent) + freedom * own) / (PRIOR_FREEDOM + freedom)
+    meat = meat + problem.systematic_meat(tangent)
     inverse = np.linalg.pinv(hessian, rcond=1e-10)
-    return np.asarray(np.sqrt(np.maximum(np.diag(inverse @ meat @ inverse), 0.0)))
+    scale = np.array([scale_of(parameter) for active in fit.actives for parameter in active.effect.parameters])
+    return np.asarray(inverse @ meat @ inverse * np.outer(scale, scale))
 
 
 def estimates(problem: Problem, fits: list[Fit]) -> list[dict[str, Estimate]]:
@@ -36,13 +38,13 @@ def estimates(problem: Problem, fits: list[Fit]) -> list[dict[str, Estimate]]:
     quantile = float(stats.t.ppf(0.5 + LEVEL / 2, problem.freedom))
     out: list[dict[str, Estimate]] = []
     for number, one in enumerate(fits):
-        errors = standard_errors(problem, one)
+        errors = np.sqrt(np.maximum(np.diag(covariance(problem, one)), 0.0))
         place = 0
         for effect, active in enumerate(one.actives):
             if number == 0:
                 out.append({})
             for parameter in active.effect.parameters:
-                half = quantile * errors[place] * scale_of(parameter)
+                half = quantile * errors[place]
                 value = active.values[parameter.name]
                 low, high = max(value - half, parameter.low), min(value + half, parameter.high)
                 if number == 0:

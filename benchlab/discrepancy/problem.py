@@ -26,6 +26,10 @@ THINNING = 0.0004
 """Systematic error of each feature, as a share of the largest value: runs are evaluated at a few points in each interval."""
 
 
+FORM = 0.05
+"""Error of the form of an effect, as a share of the gap that it is to explain: no equation is exact, and what its form leaves is no further effect."""
+
+
 class _Alike(NamedTuple):
     """cells: (n, F) of n samples; lower: L (F, F); scatter: L⁻¹ of the root of the scatter between samples; features: (F,)."""
 
@@ -54,14 +58,28 @@ class Problem:
 
     @cached_property
     def systematic(self) -> FloatArray:
-        """(F,): error of the model's own numbers, the same for all samples: of thinning the runs, and of the simulation's mesh."""
+        """(F,): error of the model's own numbers, the same for all samples: of thinning the runs, and of the form of what is missing."""
         features = self.features.features
         base = self.features.collect(predict(self.scene, (), self.features.quantities))
         number = np.bincount(self.features.feature, minlength=len(features))
         mean = np.bincount(self.features.feature, base, minlength=len(features)) / np.maximum(number, 1)
         quantity = np.array([feature.quantity for feature in features])
-        scale = {name: float(np.abs(mean[quantity == name]).max()) for name in self.features.quantities}
-        return THINNING * np.array([scale[name] for name in quantity])
+        found = np.zeros(len(features))
+        for name in self.features.quantities:
+            mine = quantity == name
+            thinning = THINNING * float(np.abs(mean[mine]).max())
+            found[mine] = np.hypot(thinning, FORM * self._gap_beyond_scatter(mean, mine))
+        return found
+
+    def _gap_beyond_scatter(self, base: FloatArray, mine: NDArray[np.bool_]) -> float:
+        """RMS of the gap between the means and the base, without what scatter brings."""
+        number = np.bincount(self.features.feature, minlength=len(base))
+        measured = np.bincount(self.features.feature, self.features.value, minlength=len(base)) / np.maximum(number, 1)
+        variance = np.empty(len(base))
+        for where, covariance in zip(self.scatter.features_of, self.scatter.covariance):
+            variance[where] = np.diag(covariance) / np.maximum(number[where], 1)
+        known = mine & (number > 0)
+        return float(np.sqrt(max(float(np.mean((measured - base)[known] ** 2 - variance[known])), 0.0)))
 
     @cached_property
     def _factors(self) -> list[_Alike]:
@@ -173,14 +191,31 @@ class Problem:
 
     def _errors(self, directions: FloatArray) -> tuple[FloatArray, FloatArray]:
         """(S, K) variance of the scores by scatter between samples, (K,) by the systematic error."""
-        between = self.per_sample(self._mapped(directions, lambda alike, flat: alike.scatter.T @ flat) ** 2)
+        between = self.per_sample(self._scattered(directions) ** 2)
+        return between, np.asarray((self._common(directions) ** 2).sum(axis=0))
+
+    def scatter_meat(self, directions: FloatArray) -> FloatArray:
+        """(K, K): covariance of the scores along whitened directions (C, K) by scatter between samples."""
+        scattered = self._scattered(directions)
+        return np.asarray(scattered.T @ scattered)
+
+    def systematic_meat(self, directions: FloatArray) -> FloatArray:
+        """(K, K): the same by the systematic error."""
+        common = self._common(directions)
+        return np.asarray(common.T @ common)
+
+    def _scattered(self, directions: FloatArray) -> FloatArray:
+        return self._mapped(directions, lambda alike, flat: alike.scatter.T @ flat)
+
+    def _common(self, directions: FloatArray) -> FloatArray:
+        """(F, K): what a systematic error of one sd in each feature does to the scores."""
         weights = self._mapped(
             directions,
             lambda alike, flat: solve_triangular(alike.lower, flat, lower=True, trans="T", check_finite=False),
         )
         together = np.zeros((len(self.features.features), directions.shape[1]))
         np.add.at(together, self.features.feature, weights)
-        return between, np.asarray((self.systematic[:, None] ** 2 * together**2).sum(axis=0))
+        return self.systematic[:, None] * together
 
     def _t(self, scores: FloatArray, errors: tuple[FloatArray, FloatArray]) -> FloatArray:
         """scores: (…, S, K) → (…, K)."""

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 class Rules:
     """first, further: largest p at which a first, a further effect is taken. multiplier: by which t must exceed the bootstrap's quantiles
     (the fitted scatter is itself uncertain). rival_t: a candidate whose residual points to the best one by more standard errors is out.
-    close: a candidate within this −2 log L of the best stays in. adequate: smallest p of the flexible test at which nothing is left.
+    close: a candidate within this −2 log L of the best stays in; alike: or within this share of what the best explains, as forms are not
+    known better. adequate: smallest p of the flexible test at which nothing is left.
     share: explained share from which an effect is named although something is left. moves: smallest RMS that a further effect must move,
     as a share of the first one's. most: effects in one model. beam: fits that are carried on.
     """
@@ -17,8 +18,9 @@ class Rules:
     first: float = 0.05
     further: float = 0.01
     multiplier: float = 1.05
-    rival_t: float = 2.2
+    rival_t: float = 3.0
     close: float = 2.0
+    alike: float = 0.0025
     adequate: float = 0.01
     share: float = 0.9
     moves: float = 0.12
