@@ -153,9 +153,10 @@ def _held_out(explanation: Explanation) -> Iterator[Block]:
     if not explanation.held_out:
         return
     rows = [Change(f"{cut(one.kind, 20)} {cut(one.what, 50)}", one.before, one.after, one.noise_floor)
-            for one in explanation.held_out]  # fmt: skip
+            for one in explanation.held_out if math.isfinite(one.after)]  # fmt: skip
     yield Words("Each was left out of the fit in turn, and then predicted.")
-    yield changes_picture(explanation, rows, "held_out", "Left out, and predicted")
+    if rows:
+        yield changes_picture(explanation, rows, "held_out", "Left out, and predicted")
     yield held_out_table(explanation)
 
 
@@ -164,7 +165,7 @@ def _left(explanation: Explanation) -> Iterator[Block]:
         yield Words(f"{cut(line, 400)}{'' if line.endswith('.') else '.'}")
     if explanation.effects:
         if not explanation.remainder:
-            yield Words("Nothing that depends on design, direction, rate, cycle or pressure more than scatter does.")
+            yield Words("In what is left no dependence on design, direction, rate, cycle or pressure was found.")
         yield map_pictures(explanation, "explained")
 
 

@@ -59,8 +59,8 @@ def _effect(found: Found, effect: Effect | None) -> Iterator[Block]:
 
 
 def equation_of(effect: Effect) -> tuple[str, str]:
-    """The equations in the documentation of an effect's file, those lines of it that are set in, and the paragraph after them: what the letters
-    mean. "" where the file has none.
+    """The equations in the documentation of an effect's file, those lines of it that are set in, and the paragraph after them: what
+    letters mean. "" where the file has none.
 
     >>> from benchlab.discrepancy.effects.frame_compliance import FrameCompliance
     >>> equation_of(FrameCompliance())[0]

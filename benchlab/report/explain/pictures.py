@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
@@ -104,7 +105,9 @@ def _lines(explanation: Explanation, lines: list[Kind], quantity: Quantity) -> P
 def changes_picture(explanation: Explanation, rows: Sequence[Change], name: str, title: str) -> Pictures:
     """Gaps before and after as rows."""
     figure = draw_changes(rows, main_quantity(explanation.curves), names_of(explanation)[1], title)
-    caption = "Diamonds: root mean square gap of the simulation. Dots: after. Strokes: noise floor, as near as a faultless model comes."
+    caption = "Diamonds: root mean square gap of the simulation. Dots: after."
+    if any(math.isfinite(row.noise_floor) for row in rows):
+        caption += " Strokes: noise floor, as near as a faultless model comes."
     return Pictures((_panel(explanation, figure, name, title),), caption + _off(rows, MOST_ROWS))
 
 

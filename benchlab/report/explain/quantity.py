@@ -9,7 +9,7 @@ import numpy as np
 from benchlab.discrepancy.explanation import Curves
 from benchlab.discrepancy.measured import QUANTITIES
 from benchlab.errors import printable
-from benchlab.report.document import cut
+from benchlab.report.document import NONE, cut
 from benchlab.report.rounding import decimals_of, number
 from benchlab.units import parse_column
 
@@ -44,12 +44,14 @@ class Quantity:
         return f"{self.noun} ({self.unit})" if self.name in QUANTITIES else self.noun
 
     def amount(self, value: float, signed: bool = False) -> str:
-        """A value with its unit; signed: with a plus where it is above zero.
+        """A value with its unit; signed: with a plus where it is above zero. A dash for NaN.
 
         >>> Quantity("angle_deg").amount(-4.52), Quantity("force_N", 2).amount(0.8, signed=True), Quantity("lift_mm").amount(3.0)
         ('−4.5°', '+0.80 N', '3.0 mm')
         """
         text = number(value, self.decimals).text
+        if text == NONE:
+            return text
         plus = "+" if signed and value > 0 and text.strip("0.") else ""
         return f"{plus}{text}{self._after}"
 

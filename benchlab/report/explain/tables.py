@@ -58,7 +58,7 @@ def rivals_table(explanation: Explanation) -> Table:
     columns = (
         Column("effects", "candidate", False), Column("form", "form", False), Column("misfit", "misfit"),
         Column("share_explained", "explains"), Column("p_enough", "p, enough"), Column("in_set", "left", False),
-        Column("reason", "why not", False),
+        Column("reason", "why", False),
     )  # fmt: skip
     ranked = sorted(explanation.tried, key=lambda one: (not one.in_set, _last(one.misfit), one.names))
     note = (

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchlab.discrepancy.explanation import Curves
+from benchlab.discrepancy.explanation import Curves, HeldOut
 from benchlab.report.document import Table, write_table
 from benchlab.report.explain.tables import (
     curves_table,
@@ -86,6 +86,11 @@ def test_held_out_over_its_floor() -> None:
     rows = held_out_table(explanations.explanation()).rows
     assert len(rows) == 12 and rows[0][1].text == "s1" and rows[0][5].text == f"{1.35 / 1.21:.2f}"
     assert rows[0][3].value == 1.35 and rows[-1][0].text == "rate"
+
+
+def test_what_could_not_be_refitted_has_no_number() -> None:
+    found = explanations.explanation(held_out=(HeldOut("sample", "fold 1", 5.2, float("nan"), float("nan")),))
+    assert [cell.text for cell in held_out_table(found).rows[0]] == ["sample", "fold 1", "5.2°", "–", "–", "–"]
 
 
 def test_what_is_not_known_is_empty(tmp_path: Path) -> None:
