@@ -13,13 +13,15 @@ from benchlab.discrepancy.explanation import NextExperiment
 from benchlab.errors import BenchError, InputError
 from benchlab.io.drive_file import read_drive_file
 from benchlab.io.twin_file import read_twin
+from benchlab.runner.end import Cause
+from benchlab.runner.stop import Stop
 from benchlab.twin.effects.camera_scale import CameraScale
 from benchlab.twin.effects.effect import Effect
 from benchlab.twin.effects.end_caps import EndCaps
 from benchlab.twin.effects.faults import Burst
 from benchlab.twin.effects.gravity import Gravity
 from benchlab.twin.settings import TwinSettings
-from benchlab.workflows import explain_mount
+from benchlab.workflows import explain_lab, explain_mount
 from benchlab.workflows.explain_lab import Wanted
 from benchlab.workflows.explain_mount import MountedLab
 from benchlab.workflows.explain_next import write_next
@@ -131,3 +133,15 @@ def test_a_bench_that_measures_no_angle_is_refused_before_anybody_is_asked(
     with pytest.raises(InputError, match="flex sensor of this bench is not calibrated"):
         lab.measure(wanted(tmp_path))
     assert not asked and not list(tmp_path.glob("*.journal"))
+
+
+def test_a_run_that_somebody_ends_leaves_its_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Asked(Stop):
+        def __init__(self, pausable: bool = True) -> None:
+            super().__init__(pausable)
+            self.ask(Cause("interrupted", "interrupted from the keyboard"))
+
+    monkeypatch.setattr(explain_lab, "Stop", Asked)
+    with pytest.raises(KeyboardInterrupt):
+        TwinLab(base(1), twin()).measure(wanted(tmp_path))
+    assert (tmp_path / f"{DESIGN}_s1_r1.journal").exists()
