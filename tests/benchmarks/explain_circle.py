@@ -1,8 +1,8 @@
 """The circle of `benchlab explain`: effects hidden in the twin, drawn by seed → protocol → twin → camera → table → explained from the tables alone.
 
 `python -m tests.benchmarks.explain_circle` prints one row a case and how many were named right; `--cases 0:5` takes some of them, `--film` draws each
-run as a film and analyses it (a minute a run), `--rounds 2` also runs what is proposed. Designs are those of the paper's table, their curves the
-shell cell's. The twin's effects share no code with those of the discrepancies: other forms, other numerics.
+run as a film and analyses it (a minute a run), `--rounds 2` also runs what is proposed. Curves are in closed form (tests/unit/discrepancy/scenes), with
+`--cell` those of the shell cell. The twin's effects share no code with those of the discrepancies: other forms, other numerics.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ from benchlab.workflows.explain_base import base_pressures, cell_base
 from benchlab.workflows.explain_loop import LoopSettings, explain_loop
 from benchlab.workflows.explain_measured import explain_measured
 from benchlab.workflows.explain_twin import TwinLab
+from tests.unit.discrepancy.scenes import base as closed_form
 
 SHAPES = ((3, 10), (3, 5), (9, 10))
 """(tw, slw) in mm."""
@@ -81,7 +82,7 @@ def twin_with(hidden: Mapping[str, Mapping[str, float]]) -> TwinSettings:
     return replace(shown, effects=on, camera=Camera(frames_per_s=30, width_px=640, height_px=480))
 
 
-def base_of(cache: Path, shapes: Sequence[tuple[float, float]] = SHAPES) -> Base:
+def cell_of(cache: Path, shapes: Sequence[tuple[float, float]] = SHAPES) -> Base:
     designs = [ShellDesign(strip_width_mm=slw, window_width_mm=tw) for tw, slw in shapes]
     layup = read_layup("from-measured-angles")
     return cell_base({one.name: one for one in designs}, layup, base_pressures(0.35), forces=False, jobs=2, cache=cache)
@@ -120,10 +121,11 @@ def main() -> None:
     options.add_argument("--samples", type=int, default=3)
     options.add_argument("--rounds", type=int, default=1)
     options.add_argument("--film", action="store_true")
+    options.add_argument("--cell", action="store_true")
     options.add_argument("--cache", type=Path, default=Path(tempfile.gettempdir()) / "benchlab-circle")
     given = options.parse_args()
     given.cache.mkdir(exist_ok=True)
-    base = base_of(given.cache)
+    base = cell_of(given.cache) if given.cell else closed_form(len(SHAPES))
     first, last = (int(part) if part else None for part in given.cases.split(":"))
     verdicts = []
     print("| hidden | drawn | verdict | names | | gap, ° (floor) | s |\n|---|---|---|---|---|---|---|", flush=True)
