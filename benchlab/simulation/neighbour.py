@@ -10,7 +10,7 @@ from benchlab.simulation.newton import Solved, minimise
 from benchlab.simulation.response import Path, PathPoint, extrapolated, follow, moment_Nmm
 
 TOLERANCE = 3e-3
-"""Of a last step, against 1e-5 of a path from the round tube. With 1e-2, a film half as stiff comes out up to 0.13° off, with 1e-3 0.001°."""
+"""Of a last step; a path from the round tube has 1e-5. With 1e-2 a film half as stiff comes out up to 0.13° off, with 1e-3 0.001°."""
 
 
 def follow_beside(
