@@ -13,7 +13,7 @@ import numpy as np
 
 from tests.blind.generator.hidden.catalogue import KNOWN, UNKNOWN
 from tests.blind.generator.setting import Layout
-from tests.blind.generator.study import Study, study
+from tests.blind.generator.study import Study, study, truth
 
 FIRST_SEED = {"tune": 1_000_000, "calibrate": 2_000_000, "score": 3_000_000}
 """Each card has a million seeds of its own."""
@@ -42,6 +42,10 @@ class Case:
     def truth(self) -> frozenset[str]:
         """What is to be named: nothing where nothing is hidden, or nothing that has a name."""
         return frozenset(self.names) if self.kind in {"single", "two", "pair"} else frozenset()
+
+    def answer(self) -> dict[str, Any]:
+        """That of its study, which is not drawn for it."""
+        return truth(self.seed, self.names, self.strengths, self.layout, self.forms).answer
 
     def study(self) -> Study:
         return study(self.seed, self.names, self.strengths, self.layout, self.forms)
@@ -219,13 +223,13 @@ def _twos(count: int, rng: np.random.Generator) -> Iterator[Case]:
 
 def _pairs(count: int, rng: np.random.Generator) -> Iterator[Case]:
     for pair in PAIRS:
-        for truth, rival in ((pair.first, pair.second), (pair.second, pair.first)):
+        for true, rival in ((pair.first, pair.second), (pair.second, pair.first)):
             for number in range(count):
-                forms = tuple(form for form in pair.forms if form[0] == truth)
+                forms = tuple(form for form in pair.forms if form[0] == true)
                 strength = float(rng.choice([3.0, 4.0]))
                 layout = replace(pair.layout, command=bool(rng.integers(2)))
-                name = f"pair-{truth}-{rival}-{number}"
-                yield Case(name, 0, "pair", (truth,), (strength,), layout, forms, rival, pair.separated_by, pair.how)
+                name = f"pair-{true}-{rival}-{number}"
+                yield Case(name, 0, "pair", (true,), (strength,), layout, forms, rival, pair.separated_by, pair.how)
 
 
 def _layout(rng: np.random.Generator) -> Layout:

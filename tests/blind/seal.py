@@ -48,7 +48,7 @@ def whole(seals: Mapping[str, str]) -> str:
 
 
 def _seal(case: Case) -> str:
-    return seal_of(case, case.study().answer)
+    return seal_of(case, case.answer())
 
 
 if __name__ == "__main__":

@@ -310,7 +310,7 @@ def test_cases_are_drawn_whatever_their_layout() -> None:
     few = [case for case in cases("tune") if case.kind in {"two", "pair"}][::12]
     for case in few:
         found = case.study()
-        assert len(found.answer["effects"]) == len(case.names)
+        assert found.answer == case.answer()
         assert [e["name"] for e in found.answer["effects"]] == list(case.names)
         assert found.frame["pressure_MPa"].notna().all()
 

@@ -78,16 +78,9 @@ def test_the_card_counts_what_was_answered() -> None:
     every = [Scored(case, truth, answered("agree"), 1.0) for case in nulls[:3]]
     every.append(Scored(nulls[3], truth, answered("named", "friction"), 3.0))
     every.append(Scored(SINGLE, truth, answered("named", "friction"), 1.0))
-    every.append(
-        Scored(
-            PAIR,
-            truth,
-            answered("ambiguous", "friction", rivals=(("softening",),)),
-            1.0,
-            second=answered("named", "friction"),
-        )
-    )
-    card = score_card(every)  # fmt: skip
+    both = answered("ambiguous", "friction", rivals=(("softening",),))
+    every.append(Scored(PAIR, truth, both, 1.0, second=answered("named", "friction")))
+    card = score_card(every)
     assert "| null studies falsely named | ≤ 5 %, upper bound ≤ 9 % | 25.0 % (1/4; 5–70) |" in card
     assert "| right, unique or in set, at 4× | ≥ 98 % | 100.0 % (1/1; 21–100) |" in card
     assert "| pairs separable by a protocol: right alone after it | ≥ 80 % | 100.0 % (1/1; 21–100) |" in card
@@ -119,7 +112,7 @@ def test_the_sealed_answers_are_those_of_the_card() -> None:
     every = cases("score")
     assert list(seal.sealed()) == [case.name for case in every]
     for case in every[:1] + every[200:600:130]:
-        answer = case.study().answer
+        answer = case.answer()
         seal.check_seal(case, answer)
         with pytest.raises(ValueError, match="is not what was sealed"):
             seal.check_seal(case, {**answer, "effects": [{"name": "another"}]})

@@ -7,6 +7,7 @@ command -> (the sensor by which the regulator works) -> pressure at its outlet -
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 
 import numpy as np
@@ -15,7 +16,7 @@ from scipy.interpolate import PchipInterpolator
 from tests.blind.generator.hidden.frame_compliance import LEVER_MM
 from tests.blind.generator.hidden.hidden import Hidden
 from tests.blind.generator.scatter import People
-from tests.blind.generator.solved import base, curve_deg
+from tests.blind.generator.solved import DESIGNS, base, curve_deg
 from tests.blind.generator.station import FloatArray, Station
 
 
@@ -38,8 +39,9 @@ def angles(effective: FloatArray, people: People, hidden: Sequence[Hidden], at: 
     """(T, S) as the camera would see them, in degrees, without noise and on the pressure's clock."""
     acting = effective + people.deviation_MPa(effective)
     angle = np.empty(at.shape)
+    changed = tuple(one for one in hidden if one.family(*DESIGNS[0]) is not None)
     for (tw, slw, length), columns in at.designs().items():
-        angle[:, columns] = _curve(tw, slw, length, hidden)(np.clip(acting[:, columns], -0.09, 0.6))
+        angle[:, columns] = _curve(tw, slw, length, changed)(np.clip(acting[:, columns], -0.09, 0.6))
     for one in hidden:
         angle = one.bent(angle, acting, at)
     angle = people.gain * angle
@@ -61,13 +63,15 @@ def forces(effective: FloatArray, people: People, hidden: Sequence[Hidden], at: 
     return np.asarray(people.force_gain * force)
 
 
+@functools.cache
 def plain_curve(tw_mm: float, slw_mm: float, length_mm: float) -> PchipInterpolator:
     """Angle over pressure of the cell as it is."""
     cell = base(tw_mm, slw_mm)
     return curve_deg(cell.pressure_MPa, cell.angle_rad_per_mm[0], length_mm)
 
 
-def _curve(tw: float, slw: float, length: float, hidden: Sequence[Hidden]) -> PchipInterpolator:
+@functools.lru_cache(maxsize=64)
+def _curve(tw: float, slw: float, length: float, hidden: tuple[Hidden, ...]) -> PchipInterpolator:
     """With all that changes the cell; several changes add up."""
     cell = base(tw, slw)
     angle = cell.angle_rad_per_mm[0].copy()

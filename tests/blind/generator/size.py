@@ -72,8 +72,8 @@ class _Shifts:
         return max(float(np.sqrt(np.mean(squares))), 1e-9)
 
 
-def sized(one: Hidden, setting: Setting, target: float) -> Hidden:
-    """The effect at the size at which its shift is the target, or at its bound where that is less.
+def sized(one: Hidden, setting: Setting, target: float) -> tuple[Hidden, float]:
+    """The effect at the size at which its shift is the target, or at its bound where that is less; and its shift.
 
     Regula falsi on the logarithms, kept within a bracket.
     """
@@ -93,4 +93,5 @@ def sized(one: Hidden, setting: Setting, target: float) -> Hidden:
         slope = np.log(tries[above] / tries[below]) / np.log(above / below)
         inner = below * (target / tries[below]) ** (1 / max(slope, 0.05))
         size = float(np.clip(inner, below * (above / below) ** 0.05, above * (below / above) ** 0.05))
-    return one.sized(min(tries, key=lambda s: abs(np.log(tries[s] / target))))
+    best = min(tries, key=lambda s: abs(np.log(tries[s] / target)))
+    return one.sized(best), tries[best]

@@ -16,7 +16,7 @@ from tests.blind.generator.hidden.hidden import Hidden
 from tests.blind.generator.runs import SUBSTEPS, Run, cycles_of, protocol_run
 from tests.blind.generator.scatter import People, Scatter, coloured
 from tests.blind.generator.setting import MOST_ROWS, Layout, Setting
-from tests.blind.generator.size import noise_floor, shift, sized
+from tests.blind.generator.size import noise_floor, sized
 from tests.blind.generator.station import FloatArray, Sample, Station
 
 PERIMETER_MM, RIB_MM = 40.0, 2.0
@@ -74,6 +74,46 @@ class Study:
         )
 
 
+@dataclass(frozen=True)
+class Truth:
+    """What is hidden in a study, before anything is measured. answer: the same in JSON's own types."""
+
+    setting: Setting
+    scatter: Scatter
+    hidden: tuple[Hidden, ...]
+    answer: dict[str, Any]
+
+
+def truth(
+    seed: int,
+    names: Sequence[str] = (),
+    strengths: Sequence[float] = (),
+    layout: Layout | None = None,
+    forms: Sequence[tuple[str, str, Any]] = (),
+) -> Truth:
+    """The truth of the study of the same arguments."""
+    layouts, drawn = (np.random.default_rng([seed, part]) for part in range(2))
+    setting = Setting.draw(layout or Layout(), layouts)
+    scatter = Scatter.draw(layouts)
+    floors = {q: noise_floor(setting, scatter, q) for q in _quantities(setting)}
+    hidden, effects = [], []
+    for name, strength in zip(names, strengths, strict=True):
+        given = {key: value for effect, key, value in forms if effect == name}
+        typical = replace(HIDDEN[name].draw(drawn), **given)
+        one, moved = sized(typical, setting, strength * floors[typical.quantity])
+        hidden.append(one)
+        effects.append(
+            {
+                "name": one.name,
+                "known": one.known,
+                "same_form": one.same_form,
+                "parameters": one.parameters(),
+                "strength": moved / floors[one.quantity],
+            }
+        )
+    return Truth(setting, scatter, tuple(hidden), _plain({"effects": effects, "noise_floor": floors}))
+
+
 def study(
     seed: int,
     names: Sequence[str] = (),
@@ -85,15 +125,9 @@ def study(
 
     forms: (effect, field, value) that are given instead of drawn. The same seed and the same wishes give the same study.
     """
-    layouts, drawn, makers, noise = (np.random.default_rng([seed, part]) for part in range(4))
-    setting = Setting.draw(layout or Layout(), layouts)
-    scatter = Scatter.draw(layouts)
-    floors = {q: noise_floor(setting, scatter, q) for q in _quantities(setting)}
-    hidden = []
-    for name, strength in zip(names, strengths, strict=True):
-        given = {key: value for effect, key, value in forms if effect == name}
-        one = replace(HIDDEN[name].draw(drawn), **given)
-        hidden.append(sized(one, setting, strength * floors[one.quantity]))
+    true = truth(seed, names, strengths, layout, forms)
+    makers, noise = (np.random.default_rng([seed, part]) for part in (2, 3))
+    setting, scatter, hidden = true.setting, true.scatter, true.hidden
     people = People.draw(scatter, len(setting.samples), makers)
     memory: dict[str, FloatArray] = {}
     parts = []
@@ -102,22 +136,7 @@ def study(
         parts.append(_read(run, station, setting.layout, scatter, people, hidden, noise))
     frame = pd.concat(parts, ignore_index=True)
     frame = frame.sort_values(["design", "sample"], kind="stable", ignore_index=True)
-    answer = {
-        "effects": [
-            {
-                "name": one.name,
-                "known": one.known,
-                "same_form": one.same_form,
-                "parameters": one.parameters(),
-                "strength": shift(setting, one) / floors[one.quantity],
-            }
-            for one in hidden
-        ],
-        "noise_floor": floors,
-    }
-    return Study(
-        seed, setting, scatter, people, tuple(hidden), frame, _made(setting.samples), _plain(answer), memory=memory
-    )
+    return Study(seed, setting, scatter, people, hidden, frame, _made(setting.samples), true.answer, memory=memory)
 
 
 def _quantities(setting: Setting) -> list[str]:
