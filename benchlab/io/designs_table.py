@@ -49,6 +49,15 @@ def read_designs(
     return shapes_in(cells, str(path), told)
 
 
+def designs_of_frame(frame: pandas.DataFrame, source: str = "designs") -> Mapping[str, ShellDesign]:
+    """The same of a DataFrame with such columns."""
+    import pandas
+
+    columns = find_columns([str(label).strip() for label in frame.columns], source)
+    data = {key: frame.iloc[:, column.index].to_numpy() for key, column in columns.read.items()}
+    return shapes_in(Cells(pandas.DataFrame(data, index=np.arange(1, len(frame) + 1)), columns, ()), source, [])
+
+
 def designs_of_names(names: Iterable[str]) -> Mapping[str, ShellDesign]:
     """The designs whose names say what they are, as `tw3_slw10`; the others are left out. Raises UsageError for an impossible one.
 

@@ -57,7 +57,10 @@ def _next(proposed: NextExperiment | None) -> dict[str, Any] | None:
     if proposed is None:
         return None
     names = ("protocol", "separates", "expected_sd", "setup", "cannot")
-    return {name: getattr(proposed, name) for name in names}
+    told = {name: getattr(proposed, name) for name in names}
+    if proposed.experiment is None:
+        return told
+    return told | {"mountings_deg": proposed.experiment.mountings_deg, "length_ratio": proposed.experiment.length_ratio}
 
 
 def _finite(value: Any) -> Any:

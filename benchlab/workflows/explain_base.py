@@ -17,7 +17,7 @@ from benchlab.simulation.layup import Layup
 from benchlab.simulation.response import check_pressures
 from benchlab.units import FloatArray
 from benchlab.workflows.batch import run_batch
-from benchlab.workflows.explain_cache import read_cached, write_cached
+from benchlab.workflows.explain_cache import key_of, read_cached, write_cached
 from benchlab.workflows.explain_curves import QUANTITY, Solved, Wanted, respond, solve_design
 from benchlab.workflows.explain_structure import BEAM_KNOBS, CELL_KNOBS, design_with
 
@@ -25,17 +25,19 @@ __all__ = ["base_pressures", "beam_base", "cell_base", "check_surrogate", "desig
 
 PRESSURES = 17
 """Simulated pressures of a design, 0 among them."""
+ROUND_MPa = 0.05
+"""Step of the largest one."""
 
 Progress = Callable[[int, int], None]
 
 
 def base_pressures(largest_MPa: float) -> FloatArray:
-    """(PRESSURES,) from 0 to the largest measured pressure, rounded up to 0.01 MPa so that like studies share their cache; denser near 0.
+    """(PRESSURES,) from 0 to the largest pressure, rounded up to ROUND_MPa so that like studies share their cache; denser near 0.
 
-    >>> base_pressures(0.3497)[[0, 1, -1]].round(4)
+    >>> base_pressures(0.3297)[[0, 1, -1]].round(4)
     array([0.    , 0.0055, 0.35  ])
     """
-    last = np.ceil(round(largest_MPa * 100, 6)) / 100
+    last = round(ROUND_MPa * np.ceil(round(largest_MPa / ROUND_MPa, 6)), 6)
     return np.asarray(last * np.linspace(0, 1, PRESSURES) ** 1.5)
 
 
@@ -180,16 +182,21 @@ def _simulate(
 ) -> dict[str, str]:
     """Simulate those not yet `found`, wide windows first, which take longest; returns those that cannot be, with the reason."""
     left = sorted(((n, d) for n, d in designs.items() if n not in found), key=lambda each: -each[1].window_width_mm)
+    alike: dict[str, list[tuple[str, ShellDesign]]] = {}
+    for each in left:
+        alike.setdefault(key_of(each[1], wanted), []).append(each)
     missing: dict[str, str] = {}
     work = functools.partial(solve_design, wanted=wanted)
-    for outcome in run_batch(left, work, min(jobs, max(len(left), 1))):
-        name, design = outcome.item
+    for outcome in run_batch([same[0] for same in alike.values()], work, min(jobs, max(len(alike), 1))):
+        first, design = outcome.item
+        same = alike[key_of(design, wanted)]
         if outcome.result is not None:
-            found[name] = outcome.result["solved"]
-            if cache and (note := write_cached(cache, design, wanted, found[name])):
+            solved = outcome.result["solved"]
+            found.update((name, solved.called(name, shape)) for name, shape in same)
+            if cache and (note := write_cached(cache, design, wanted, solved)):
                 notes.append(note)
         elif outcome.error is not None:
-            missing[name] = str(outcome.error)
+            missing.update((name, str(outcome.error).replace(first, name)) for name, _ in same)
         if progress:
             progress(len(found) + len(missing), len(designs))
     return missing

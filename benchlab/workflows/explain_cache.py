@@ -14,7 +14,7 @@ import sys
 import zipfile
 import zlib
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from importlib.resources import files
 from pathlib import Path
 
@@ -48,11 +48,12 @@ def default_cache(environment: Mapping[str, str] = os.environ, platform: str = s
 
 
 def key_of(design: ShellDesign, wanted: Wanted) -> str:
-    """One number for all that the curves follow from: design, layup, pressures, fixture, knobs and the code that computes them."""
+    """One number for all that the curves follow from: design but for its length, layup, pressures, fixture, knobs and the code that
+    computes them."""
     document = layup_document(wanted.layup)
     whole = {
         "kind": wanted.kind,
-        "design": asdict(design),
+        "design": {name: value for name, value in asdict(design).items() if name != "length_mm"},
         "layup": {name: value for name, value in document.items() if name not in ("name", "origin")},
         "pressures_MPa": wanted.pressures_MPa,
         "fixture": asdict(wanted.fixture),
@@ -85,6 +86,7 @@ def write_cached(folder: Path, design: ShellDesign, wanted: Wanted, solved: Solv
         arrays |= {f"values:{knob}": table.values}
         arrays |= {f"factor:{knob}:{q}": factor for q, factor in table.factor.items()}
     named = [note.removeprefix(f"{found.name}: ") for note in solved.notes]
+    arrays["length_mm"] = np.array(design.length_mm)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with written_whole(_path(folder, key)) as path:
@@ -113,7 +115,8 @@ def _solved(arrays: dict[str, np.ndarray], name: str, design: ShellDesign, wante
     notes = tuple(f"{name}: {note}" for note in arrays["notes"].tolist())
     if not {"angle_deg", "volume_mL"} <= set(curves):
         raise KeyError("curves")
-    return Solved(DesignBase(name, pressure, curves, design, knobs), notes)
+    was = replace(design, length_mm=float(_finite(arrays["length_mm"], ())))
+    return Solved(DesignBase(name, pressure, curves, was, knobs), notes).called(name, design)
 
 
 def _finite(array: np.ndarray, shape: tuple[int, ...] | None = None) -> FloatArray:

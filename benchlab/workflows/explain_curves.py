@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -44,6 +44,15 @@ class Solved:
 
     design: DesignBase
     notes: tuple[str, ...] = ()
+
+    def called(self, name: str, shape: ShellDesign) -> Solved:
+        """The same under another name and in another length: the cell is the same, so angle and volume go with the length, and the
+        blocked force does not depend on it."""
+        assert self.design.shape is not None
+        ratio = shape.length_mm / self.design.shape.length_mm
+        curves = {q: curve if q == "force_N" else ratio * curve for q, curve in self.design.curves.items()}
+        notes = tuple(f"{name}: {note.removeprefix(f'{self.design.name}: ')}" for note in self.notes)
+        return Solved(replace(self.design, name=name, shape=shape, curves=curves), notes)
 
 
 def solve_design(named: tuple[str, ShellDesign], wanted: Wanted) -> dict[str, Any]:
