@@ -12,6 +12,7 @@ import pytest
 
 from benchlab.vision.synthetic import Scene
 from benchlab.workflows import sample_data, sample_study
+from tests.system.models import beam_model
 
 ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -52,10 +53,12 @@ REFUSE_TO_REPLACE = (
 
 @pytest.fixture(scope="module")
 def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with sample_data in it, and with pictures of a chessboard held at several angles."""
+    """A folder with sample_data in it, with a model file, and with pictures of a chessboard held at several angles."""
     folder = tmp_path_factory.mktemp("clone")
     for part in ("sample_data", "benchlab"):
         (folder / part).symlink_to(ROOT / part)
+    (folder / "explained").mkdir()
+    beam_model(folder / "explained" / "model.yaml", end_caps={}, friction={})
     (folder / "board").mkdir()
     flat = np.full((760, 1060), 255, np.uint8)
     for row in range(7):
@@ -94,6 +97,7 @@ def test_readme_has_commands() -> None:
 @pytest.mark.parametrize("command", COMMANDS)
 def test_command_of_readme(command: str, clone: Path, benchlab, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(clone)
+    monkeypatch.setenv("BENCHLAB_CACHE", str(clone / "kept"))
     if "sample-data" in command:  # drawn small, and elsewhere: the true ones take minutes and are in the repository
         monkeypatch.setattr(sample_data, "FRAMES", 2)
         monkeypatch.setattr(

@@ -15,9 +15,11 @@ from benchlab.io.design_file import write_design
 from benchlab.io.layup_file import read_layup, write_layup
 from benchlab.io.response_file import read_response_file
 from benchlab.simulation.actuator_response import PUBLISHED_LEVER_ARM_MM
+from benchlab.simulation.beam import beam_response
 from benchlab.simulation.laws import Polynomial
 from benchlab.simulation.layup import Layup
 from benchlab.workflows import simulate
+from tests.system.models import LAYUP, beam_model
 
 FILES = ["tw9_slw10.cell.png", "tw9_slw10.csv", "tw9_slw10.h5", "tw9_slw10.png"]
 SHORT = ("simulate", "--tw-mm", 9, "--slw-mm", 10, "--pressure-MPa", "0.05,0.1")
@@ -207,3 +209,57 @@ def test_names_and_folders_in_the_way(benchlab, tmp_path) -> None:
     (tmp_path / "tw3_slw10.png").mkdir()
     refused = benchlab(*design, "--overwrite")
     assert refused.code == 2 and "is a folder" in refused.err
+
+
+def test_a_model_is_its_base_with_its_effects(benchlab, tmp_path, monkeypatch) -> None:
+    monkeypatch.setenv("BENCHLAB_CACHE", str(tmp_path / "kept"))
+    model = beam_model(tmp_path / "found.yaml", end_caps={"cap_mm": 9.0}, viscoelasticity={})
+    done = benchlab("simulate", "--tw-mm", 3, "--slw-mm", 10, "--pressure-MPa", "0.1,0.2", "--model", model, "--out",
+                    tmp_path / "new", "--json")  # fmt: skip
+    assert done.code == 0, done.err
+    beam = beam_response(ShellDesign(10, 3), read_layup(LAYUP), [0.1, 0.2])
+    found = [point["angle_deg"] for point in done.json["points"]]
+    assert found == pytest.approx((0.9 * beam.angle_deg).tolist(), abs=0.1)
+    assert [point["base_angle_deg"] for point in done.json["points"]] == pytest.approx(beam.angle_deg.tolist(), abs=0.1)
+    assert done.json["points"][-1]["blocked_force_N"] == pytest.approx(beam.blocked_force_N[-1], rel=1e-2)
+    assert sorted(p.name for p in (tmp_path / "new").iterdir()) == [
+        f"tw3_slw10_found.{s}" for s in ("csv", "h5", "png")
+    ]
+    assert "found.yaml" in done.err and "not shown: creep" in done.err and "simulated" in done.json["statement"]
+    table = pandas.read_csv(tmp_path / "new" / "tw3_slw10_found.csv")
+    assert table["angle_deg"].tolist() == pytest.approx(found, rel=1e-6) and table["axial_stretch"].isna().all()
+    file = read_response_file(tmp_path / "new" / "tw3_slw10_found.h5")
+    assert file.states == () and file.extras["base_angle_deg"] == pytest.approx(beam.angle_deg, abs=0.1)
+    assert file.curves.about["provenance"]["model"]["file"] == "found.yaml"
+    assert [each["name"] for each in file.curves.about["simulation"]["model"]["effects"]] == [
+        "end_caps",
+        "viscoelasticity",
+    ]
+    assert cv2.imread(str(tmp_path / "new" / "tw3_slw10_found.png")) is not None
+
+
+def test_what_a_model_does_not_go_with_is_refused(benchlab, tmp_path) -> None:
+    model = beam_model(tmp_path / "found.yaml", end_caps={})
+    short = (
+        "simulate",
+        "--tw-mm",
+        3,
+        "--slw-mm",
+        10,
+        "--pressure-MPa",
+        "0.1",
+        "--model",
+        model,
+        "--out",
+        tmp_path / "new",
+    )
+    for option, value, what in (
+        ("--material", "trial", "--model and --material"),
+        ("--cap-mm", 5, "--cap-mm and --model"),
+        ("--tip-force-at-deg", 10, "tip"),
+    ):
+        done = benchlab(*short, option, value)
+        assert done.code == 2 and what in done.err and not (tmp_path / "new").exists()
+    model.write_text(model.read_text(encoding="utf-8").replace("end_caps", "magic"), encoding="utf-8")
+    done = benchlab(*short)
+    assert done.code == 3 and "found.yaml" in done.err and "no effect is called 'magic'" in done.err

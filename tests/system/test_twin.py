@@ -15,6 +15,7 @@ from benchlab.io.journal import read_journal
 from benchlab.io.twin_file import read_twin
 from benchlab.twin.effects.catalogue import DEFAULT, EFFECTS, FAULTS
 from benchlab.workflows.study_readings import Target, read_run
+from tests.system.models import beam_model
 
 GUIDE = (Path(__file__).resolve().parents[2] / "docs" / "twin.md").read_text(encoding="utf-8")
 SMALL = "camera: {width_px: 640, height_px: 360, markers: 7}\n"
@@ -106,3 +107,35 @@ def test_the_guide_has_every_effect_with_its_numbers(tmp_path: Path) -> None:
     (tmp_path / "own.yaml").write_text(text.replace("curve: tw9_slw10.h5", "design: a"))
     twin = read_twin(tmp_path / "own.yaml")
     assert twin.effects["burst"] == EFFECTS["burst"](at_s=3.0) and "viscoelasticity" not in twin.effects
+
+
+def test_a_twin_of_a_model_has_its_curve_and_its_effects(
+    lab: Path, benchlab: Callable, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("BENCHLAB_CACHE", str(lab / "kept"))
+    beam_model(lab / "found.yaml", window_ballooning={"share": 1.0}, regulator_lag={"lag_s": 0.05}, friction={})
+    (lab / "own.yaml").write_text("model: found.yaml\ndesign: tw5_slw10\neffects: {friction: off}\nseed: 3\n")
+    for name, options in (
+        ("a", ("--bench", "twin", "--model", "found.yaml", "--design", "tw5_slw10")),
+        ("b", ("--bench", "twin:own.yaml")),
+    ):
+        done = benchlab("run", "up.yaml", *options, "--fast", "--name", name, "--quiet")
+        assert done.code == 0, done.err
+        assert ("friction" in done.err) == (name == "a")
+    first, second = (read_journal(lab / f"{name}.journal").header for name in "ab")
+    assert first["model"]["file"] == "found.yaml" == second["model"]["file"]
+    assert set(first["device"]["effects"]) == {"dac_steps", "regulator_lag", "friction", "sensor_noise"}
+    assert set(second["device"]["effects"]) == {"dac_steps", "regulator_lag", "sensor_noise"}
+    assert first["device"]["effects"]["regulator_lag"] == {"lag_s": 0.05, "deadband_MPa": 0.0}
+    assert first["device"]["curve"] == second["device"]["curve"] and second["seed"] == 3
+    assert "window_ballooning" in first["device"]["curve"]["source"] and first["device"]["length_mm"] == 180
+    for text, what in (
+        ("model: found.yaml\ncurve: tw3_slw10\n", "a model has its own"),
+        ("model: none.yaml\n", "no such file"),
+    ):
+        (lab / "own.yaml").write_text(text)
+        refused = benchlab("run", "up.yaml", "--bench", "twin:own.yaml", "--fast", "--name", "c")
+        assert refused.code in (2, 3) and what in refused.err
+    (lab / "own.yaml").write_text("model: found.yaml\n")
+    two = benchlab("run", "up.yaml", "--bench", "twin:own.yaml", "--model", "found.yaml", "--fast", "--name", "c")
+    assert two.code == 2 and "are two" in two.err
