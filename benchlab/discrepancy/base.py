@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from benchlab.actuator import ShellDesign
 from benchlab.units import FloatArray
+
+if TYPE_CHECKING:
+    from benchlab.discrepancy.effects.effect import Active
 
 KNOBS = {
     "film_modulus": (1.0, "factor on the film's stiffness"),
@@ -52,6 +56,7 @@ class Base:
     """Designs by name. kind: cell, beam or foreign. source: in words. error: of its numbers, relative (u_num of V&V 20).
 
     missing: designs that could not be simulated, each with its reason. warnings: curves and knobs that end early, a cache that was damaged.
+    given: effects that are part of this model already, with their numbers: every prediction has them.
     """
 
     designs: Mapping[str, DesignBase]
@@ -60,6 +65,7 @@ class Base:
     error: float = 0.005
     missing: Mapping[str, str] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
+    given: tuple[Active, ...] = ()
 
     def largest_pressure_MPa(self, design: str) -> float:
         return float(np.max(self.designs[design].pressure_MPa))

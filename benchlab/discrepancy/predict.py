@@ -15,8 +15,10 @@ def predict(
 ) -> dict[str, FloatArray]:
     """(T, R) of each quantity: angle_deg as the camera sees it, volume_mL, force_N, flex_V (here still the angle felt, deg).
 
+    Effects that the base has already come first.
     Effects at one place act in the order given. Moduli of several effects multiply, other knobs add up.
     """
+    actives = (*scene.base.given, *actives)
     pressure = scene.pressure_MPa
     for active in actives:
         pressure = active.effect.gauge(pressure, At(scene, active.values, active.form, pressure, pressure))
