@@ -126,7 +126,7 @@ def units_of(kind: str) -> tuple[str, ...]:
 
 
 def converted(values: FloatArray, meaning: Meaning) -> FloatArray:
-    """The values in the unit of benchlab, same shape. A standard deviation has no zero to be moved.
+    """The values in the unit of benchlab, same shape.
 
     >>> converted(np.array([0.0, np.pi]), Meaning("angle_deg", "angle", "rad")).tolist()
     [0.0, 180.0]
@@ -136,4 +136,4 @@ def converted(values: FloatArray, meaning: Meaning) -> FloatArray:
     if meaning.kind in _SHARED:
         return _SHARED[meaning.kind](values, meaning.unit)
     scaled = values * _OWN[meaning.kind][meaning.unit]
-    return scaled - 273.15 if meaning.unit == "K" and meaning.role != "sd" else scaled
+    return scaled - 273.15 if meaning.unit == "K" else scaled

@@ -77,10 +77,9 @@ def test_the_muscle_without_a_header(actuators: Path, columns: str) -> None:
         read_measured([path])
 
 
-def test_a_step_response_without_a_header(actuators: Path) -> None:
-    path = find(actuators, "TheBigBenn*")  # its units are not told: those of this test are chosen
-    table = np.array([row[:3] for row in rows(path, delimiter="\t")], dtype=float)
-    found = read_measured([path], columns_of("time_ms=1,drive=2,angle_deg=3"), ["drive"])
-    assert isinstance(found, Measured) and found.runs[0].values["angle_deg"].tolist() == table[:, 2].tolist()
-    assert found.runs[0].pressure_MPa.tolist() == table[:, 1].tolist()
-    assert any("'drive' takes its place" in words for words in found.warnings)
+def test_a_step_of_pressure_alone_is_no_measurement_of_an_actuator(actuators: Path) -> None:
+    path = find(actuators, "TheBigBenn*")  # a step of 20000 in column 2, followed in column 3: Pa by the file's name
+    with pytest.raises(InputError, match="no column of a measured quantity"):
+        read_measured([path], columns_of("command_Pa=2,pressure_Pa=3"))
+    found = read_measured([path], columns_of("command_Pa=2,pressure_Pa=3,flex_mV=1"))
+    assert isinstance(found, Measured) and found.runs[0].pressure_MPa.max() == pytest.approx(0.02151578)
