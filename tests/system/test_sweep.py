@@ -13,6 +13,7 @@ from benchlab.actuator import ShellDesign
 from benchlab.io.layup_file import DEFAULT_LAYUP, read_layup
 from benchlab.io.sweep_file import read_sweep_file
 from benchlab.simulation.actuator_response import actuator_response
+from tests.system.models import beam_model
 
 FAST = ("--pressure-MPa", "0.1,0.2", "--no-blocked", "--jobs", "1")
 
@@ -164,3 +165,23 @@ def test_interrupted_it_keeps_what_is_done_and_goes_on_from_there(benchlab, tmp_
 def test_the_scheduler_option_says_what_is_wrong(benchlab, tmp_path):
     done = benchlab("sweep", "--jobs", 1, "--scheduler", "tcp://127.0.0.1:1", "--out", tmp_path)
     assert done.code == 2 and "give one of them" in done.err
+
+
+def test_a_model_is_swept_over_designs_and_is_not_taken_for_another(benchlab, tmp_path, monkeypatch):
+    monkeypatch.setenv("BENCHLAB_CACHE", str(tmp_path / "kept"))
+    model = beam_model(tmp_path / "found.yaml", end_caps={"cap_mm": 9.0})
+    call = ("sweep", "--tw-mm", "3,5", "--slw-mm", 10, *FAST, "--model", model, "--out", tmp_path / "out", "--json")
+    done = benchlab(*call)
+    assert done.code == 0, done.err
+    swept = read_sweep_file(tmp_path / "out" / "sweep_tw3-5_slw10.h5")
+    one = benchlab("simulate", "--tw-mm", 5, "--slw-mm", 10, "--pressure-MPa", "0.1,0.2", "--model", model, "--out", tmp_path / "one",
+                   "--json")  # fmt: skip
+    assert swept.curves["angle_deg"][1] == pytest.approx([point["angle_deg"] for point in one.json["points"]], rel=1e-9)
+    assert np.isnan(swept.curves["peak_film_strain"]).all()
+    assert swept.settings["model"]["effects"][0]["name"] == "end_caps"
+    assert benchlab(*call).json["reused"] == 2
+    beam_model(tmp_path / "found.yaml", end_caps={"cap_mm": 18.0})
+    again = benchlab(*call)
+    assert again.json["reused"] == 0
+    angles = read_sweep_file(tmp_path / "out" / "sweep_tw3-5_slw10.h5").curves["angle_deg"]
+    assert angles == pytest.approx(8 / 9 * swept.curves["angle_deg"], rel=1e-6)
