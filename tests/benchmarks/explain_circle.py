@@ -42,7 +42,6 @@ DRAWN: dict[str, dict[str, tuple[float, float]]] = {
     "dead_pressure": {"dead_MPa": (0.015, 0.04)},
     "gravity": {"sag_deg": (4, 10)},
     "leakage": {"share": (0.06, 0.15)},
-    "regulator_lag": {"lag_s": (0.15, 0.5)},
     "line_resistance": {"resistance_MPa_s_per_mL": (0.01, 0.04)},
     "pressure_gain": {"gain": (1.06, 1.15)},
     "pressure_offset": {"offset_MPa": (0.01, 0.03)},
@@ -50,7 +49,9 @@ DRAWN: dict[str, dict[str, tuple[float, float]]] = {
     "marker_offset": {"offset_mm": (5, 12)},
     "clock_offset": {"ahead_s": (0.15, 0.5)},
 }
-"""Effects that are hidden, one at a time, and between what their parameters are drawn; others keep their typical values."""
+"""Effects that are hidden, one at a time, and between what their parameters are drawn; others keep their typical values.
+
+Not regulator_lag: the twin's monitor reads behind the regulator, so that its lag is in the recorded pressure and there is no gap."""
 
 NULLS = 2
 ALWAYS = ("dac_steps", "sensor_noise")
