@@ -17,6 +17,7 @@ from benchlab.cli.calibrate import calibrate
 from benchlab.cli.control import control
 from benchlab.cli.cut import cut
 from benchlab.cli.design import design
+from benchlab.cli.explain import explain
 from benchlab.cli.export import export
 from benchlab.cli.fit_material import fit_material
 from benchlab.cli.force import force
@@ -67,6 +68,8 @@ def cli(debug: bool) -> None:
     Predict: `benchlab simulate --tw-mm 3 --slw-mm 10` simulates a fabric-shelled actuator: angle, volume, blocked force;
     `sweep` many designs, `design` the one that is wanted, `cut` it.
 
+    Explain: `benchlab explain MEASURED` finds where simulation and measurement disagree, and names what is missing.
+
     \b
     Exit codes: 0 ok, 1 a bug in benchlab, 2 usage, 3 input refused, 4 a batch finished with failures,
     5 the bench stopped or was stopped, 130 interrupted (what was measured is kept, marked partial).
@@ -79,6 +82,7 @@ cli.add_command(calibrate)
 cli.add_command(control)
 cli.add_command(cut)
 cli.add_command(design)
+cli.add_command(explain)
 cli.add_command(export)
 cli.add_command(fit_material)
 cli.add_command(force)

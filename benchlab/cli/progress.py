@@ -65,6 +65,43 @@ def _bar(label: str) -> Iterator[Reporter]:
         yield report
 
 
+class Teller(Protocol):
+    def __call__(self, words: str, done: int, total: int | None) -> None: ...
+
+
+@contextmanager
+def stages() -> Iterator[Teller]:
+    """Yields what a workflow of several stages calls with what it is doing, and how much of it is done."""
+    if not fancy():
+        yield _PlainStages()
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+    from rich.text import Text
+
+    columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(bar_width=20), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True, refresh_per_second=5) as bar:
+        task = bar.add_task("", total=None)
+
+        def report(words: str, done: int, total: int | None) -> None:
+            bar.update(task, description=Text(printable(words)).markup, completed=done, total=total)
+
+        yield report
+
+
+class _PlainStages:
+    """A line a stage, and one now and then within it."""
+
+    def __init__(self) -> None:
+        self.words, self.plain = "", _Plain("")
+
+    def __call__(self, words: str, done: int, total: int | None) -> None:
+        if words != self.words:
+            self.words, self.plain = words, _Plain(printable(words))
+            print(f"{self.plain.label} …", file=sys.stderr, flush=True)
+        self.plain(done, total)
+
+
 class _Plain:
     """A line now and then, for logs."""
 

@@ -13,6 +13,7 @@ from benchlab.actuator import DIMENSIONS, ShellDesign
 from benchlab.errors import InputError, UsageError, printable
 from benchlab.io.design_file import design_named, read_design
 from benchlab.io.files import check_regular_file
+from benchlab.io.hdf5 import is_hdf5
 from benchlab.io.measured_cells import Cells, read_cells
 from benchlab.io.measured_columns import find_columns
 from benchlab.io.measured_units import converted
@@ -56,6 +57,14 @@ def designs_of_frame(frame: pandas.DataFrame, source: str = "designs") -> Mappin
     columns = find_columns([str(label).strip() for label in frame.columns], source)
     data = {key: frame.iloc[:, column.index].to_numpy() for key, column in columns.read.items()}
     return shapes_in(Cells(pandas.DataFrame(data, index=np.arange(1, len(frame) + 1)), columns, ()), source, [])
+
+
+def designs_beside(path: Path, columns: Mapping[str, str] | None = None) -> Mapping[str, ShellDesign]:
+    """The dimensions that a table of measurements gives its designs itself, in columns tw_mm and slw_mm; empty where it has none."""
+    if path.is_dir() or is_hdf5(path):
+        return {}
+    cells = read_cells(path, lambda header: find_columns(header, str(path), columns))
+    return shapes_in(cells, str(path), []) if set(WANTED) <= set(cells.columns.read) else {}
 
 
 def designs_of_names(names: Iterable[str]) -> Mapping[str, ShellDesign]:

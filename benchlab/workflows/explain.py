@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +14,9 @@ from benchlab.discrepancy.effects.catalogue import effects
 from benchlab.discrepancy.every_fit import every_fit as fits_of
 from benchlab.discrepancy.every_fit import measured_matrix
 from benchlab.discrepancy.explain import Explained
+from benchlab.discrepancy.explanation import Explanation
 from benchlab.discrepancy.measured import Measured, Summary
+from benchlab.errors import UsageError
 from benchlab.io.designs_table import designs_of_frame
 from benchlab.io.experiment_protocol import protocol_of
 from benchlab.io.layup_file import read_layup
@@ -21,13 +25,101 @@ from benchlab.io.simulated_table import read_simulated
 from benchlab.workflows.explain_answer import answer_of
 from benchlab.workflows.explain_base import base_pressures, cell_base, foreign_base
 from benchlab.workflows.explain_cache import default_cache
+from benchlab.workflows.explain_chosen import DEFAULT_MATERIAL, Choice, Chosen, Wanted, choose_base
 from benchlab.workflows.explain_measured import explain_measured
+from benchlab.workflows.explain_outputs import ExplainOutputs, written
+from benchlab.workflows.explain_read import read_explained
+from benchlab.workflows.explain_surrogate import surrogate_error
 
 if TYPE_CHECKING:
     import pandas
 
-DEFAULT_MATERIAL = "from-measured-angles"
-"""Of the cell where none is given: the shipped film that was identified from what was measured."""
+GAUGE_NOISE = 1.01
+"""What lies less than this factor above a simulated pressure is noise of the gauge."""
+
+Tell = Callable[[str, int, int | None], None]
+"""What is being done, and how much of it: done, in all (None where unknown)."""
+
+
+def _silent(words: str, done: int, total: int | None) -> None:
+    pass
+
+
+@dataclass(frozen=True)
+class ExplainSettings:
+    """What the options of `benchlab explain` say. out: folder of the results; None: nothing is written."""
+
+    choice: Choice = field(default_factory=Choice)
+    out: Path | None = None
+    against: tuple[str, ...] = ()
+    pattern: str | None = None
+    seed: int = 1
+    overwrite: bool = False
+
+
+@dataclass(frozen=True)
+class ExplainedFiles:
+    """What was found, as objects for the terminal and as the JSON answer."""
+
+    explanation: Explanation
+    answer: dict[str, Any]
+
+
+def explain(paths: Sequence[Path], settings: ExplainSettings, tell: Tell = _silent) -> ExplainedFiles:
+    """Explain what the files hold, and write report, numbers, model and next protocol into `out`, all or none.
+
+    Raises UsageError and InputError; then nothing was written.
+    """
+    settings.choice.check()
+    if settings.seed < 0:
+        raise UsageError(f"--seed is {settings.seed}", hint="give 0 or more")
+    read = (*paths, *settings.choice.reads)
+    if settings.out is None:
+        return _explained(paths, settings, tell, None)
+    outputs = ExplainOutputs(settings.out, "explain", settings.overwrite)
+    outputs.check(overlay=False, inputs=read)
+    with outputs.locked():
+        return _explained(paths, settings, tell, outputs)
+
+
+def _explained(
+    paths: Sequence[Path], settings: ExplainSettings, tell: Tell, outputs: ExplainOutputs | None
+) -> ExplainedFiles:
+    choice = settings.choice
+    tell("reading", 0, None)
+    measured = read_explained(
+        paths,
+        choice.columns,
+        settings.against,
+        settings.pattern,
+        settings.out,
+        choice.jobs,
+        lambda done, total: tell("analysing recordings", done, total),
+    )
+    wanted = Wanted(designs_in(measured), largest_MPa(measured), "force_N" in quantities_in(measured))
+    chosen = choose_base(wanted, choice, paths, lambda done, total: tell("simulating designs", done, total))
+    found = explain_measured(measured, chosen.base, seed=settings.seed, progress=lambda words: tell(words, 0, None))
+    return finished(found, chosen, (*paths, *choice.reads), outputs, tell)
+
+
+def finished(
+    found: Explained,
+    chosen: Chosen,
+    inputs: Sequence[Path],
+    outputs: ExplainOutputs | None,
+    tell: Tell = _silent,
+    extra: Mapping[str, Any] | None = None,
+) -> ExplainedFiles:
+    """The answer, and its files where there are outputs. inputs: files that it rests on. extra: further entries of the answer."""
+    tell("checking the simulation of what was named", 0, None)
+    error, doubts = surrogate_error(found, chosen)
+    warnings = (*chosen.told, *chosen.base.warnings, *found.explanation.warnings, *doubts)
+    explanation = replace(found.explanation, warnings=tuple(dict.fromkeys(warnings)))
+    more = {"simulation_error": error, **(extra or {})}
+    if outputs is None:
+        return ExplainedFiles(explanation, {**answer_of(explanation), **more})
+    tell("writing the report", 0, None)
+    return ExplainedFiles(*written(explanation, chosen, inputs, outputs, more))
 
 
 def explain_frame(
@@ -49,9 +141,8 @@ def explain_frame(
     """
     measured, shapes = measured_of_frame(frame, "a table"), designs_of_frame(designs)
     if base is None:
-        wanted = {name: shapes[name] for name in designs_in(measured) if name in shapes}
         cell = cell_base(
-            wanted,
+            {name: shapes[name] for name in designs_in(measured) if name in shapes},
             read_layup(material),
             base_pressures(largest_MPa(measured)),
             forces="force_N" in quantities_in(measured),
@@ -79,10 +170,6 @@ def quantities_in(measured: Measured | Summary) -> set[str]:
     return {name for run in measured.runs for name, values in run.values.items() if np.isfinite(values).any()}
 
 
-GAUGE_NOISE = 1.01
-"""What lies less than this factor above a simulated pressure is noise of the gauge."""
-
-
 def largest_MPa(measured: Measured | Summary) -> float:
     """Largest pressure, without the noise of the gauge: the 99.5th percentile of a run, so that like studies have the same simulation."""
     if isinstance(measured, Summary):
@@ -90,8 +177,8 @@ def largest_MPa(measured: Measured | Summary) -> float:
     return max(float(np.nanquantile(run.pressure_MPa, 0.995)) for run in measured.runs) / GAUGE_NOISE
 
 
-def _every_fit(found: Explained) -> dict[str, Any] | None:
-    """As rules that choose by a misfit alone take them. None where nothing can be fitted."""
+def _every_fit(found: Explained) -> dict[str, Any]:
+    """As rules that choose by a misfit alone take them."""
     problem, judged = found.problem, found.explanation.judged_not
     fits = fits_of(problem, [effect for name, effect in effects().items() if name not in judged])
     return {

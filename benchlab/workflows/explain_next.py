@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 from pathlib import Path
 
+from benchlab.discrepancy.experiment import Experiment
 from benchlab.discrepancy.explanation import NextExperiment
 from benchlab.io.experiment_protocol import protocol_of
 from benchlab.io.files import written_whole
@@ -17,6 +18,11 @@ LIMIT_MPa = 0.35
 LONGEST_S = 7200.0
 
 
+def next_name(experiment: Experiment) -> str:
+    """Of its protocol file."""
+    return f"next_{experiment.name}.yaml"
+
+
 def write_next(folder: Path, proposed: NextExperiment) -> NextExperiment:
     """Write `next_NAME.yaml`, replacing one that is there; `protocol` of what comes back is its path.
 
@@ -26,7 +32,7 @@ def write_next(folder: Path, proposed: NextExperiment) -> NextExperiment:
     experiment = proposed.experiment
     if experiment is None:
         return proposed
-    path = folder / f"next_{experiment.name}.yaml"
+    path = folder / next_name(experiment)
     top_MPa = float(experiment.trace()[1].max())
     expected = None if math.isnan(proposed.expected_sd) else proposed.expected_sd
     with written_whole(path) as temporary:

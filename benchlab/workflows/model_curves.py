@@ -184,6 +184,20 @@ def knobs_of(actives: Sequence[Active]) -> tuple[str, ...]:
     return tuple(knob for knob in KNOBS if knob in turned)
 
 
+def knob_settings(actives: Sequence[Active]) -> dict[str, float]:
+    """At which value each structural knob stands with all of these effects together, as `predict` has it; without those that change
+    in a run."""
+    scene = slow_ramp(_any_base(), "any", np.linspace(0.0, 0.35, 8))
+    found: dict[str, float] = {}
+    for active in actives:
+        for knob, setting in _settings(scene, active).items():
+            if np.ptp(setting) == 0:
+                value = float(np.ravel(setting)[0])
+                before = found.get(knob, KNOBS[knob][0])
+                found[knob] = before * value if KNOBS[knob][0] == 1.0 else before + value
+    return found
+
+
 def check_range(base: Base, name: str, actives: Sequence[Active]) -> None:
     """Raises InputError where an effect turns a knob farther than the design was simulated with it."""
     knobs = base.designs[name].knobs

@@ -12,6 +12,7 @@ from benchlab.errors import BenchlabError, UsageError
 from benchlab.io.published import PublishedAngle, published_angles
 from benchlab.io.study_file import Study, read_study
 from benchlab.io.study_values import StudySet, StudyValues
+from benchlab.io.values_table import write_values_table
 from benchlab.report.pdf import check_pdf
 from benchlab.report.study.document import study_document
 from benchlab.report.study.numbers import report_numbers
@@ -19,7 +20,7 @@ from benchlab.report.study.report import ComparedSet, PublishedSet, SAME_PRESSUR
 from benchlab.stats.comparison import Comparison, check_options, compare, compare_summaries
 from benchlab.stats.measurements import measurements_of
 from benchlab.workflows.provenance import made_by
-from benchlab.workflows.report_outputs import NUMBERS, PAGE, PDF, ReportOutputs, names_of, write_report
+from benchlab.workflows.report_outputs import NUMBERS, PAGE, PDF, VALUES, ReportOutputs, names_of, write_report
 from benchlab.workflows.study_values import Progress, collect
 
 LIBRARIES = ("numpy", "scipy", "matplotlib", "jinja2")
@@ -58,9 +59,14 @@ def report(
         found = report_of(values, published_angles(), confidence, difference_deg)
         found.provenance["study"] = str(asked.path)
         document = study_document(found)
-        outputs = replace(outputs, names=names_of(document, pdf))
+        outputs = replace(outputs, names=names_of(document, pdf, [VALUES]))
         outputs.check(overlay=False, inputs=read)
-        numbers = write_report(outputs, document, values, report_numbers(found))
+        numbers = write_report(
+            outputs,
+            document,
+            report_numbers(found),
+            lambda folder: write_values_table(folder / VALUES, values),
+        )
     return {**numbers, "outputs": [str(path) for path in outputs.paths()]}
 
 
