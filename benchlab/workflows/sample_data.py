@@ -16,6 +16,7 @@ from benchlab.vision.picture import FloatArray
 from benchlab.vision.synthetic import Scene
 from benchlab.workflows.drawn_film import Progress, write_drawn_film
 from benchlab.workflows.sample_data_readme import readme
+from benchlab.workflows.sample_explain import measured_rows, simulated_rows
 from benchlab.workflows.sample_force import force_files, force_rows
 from benchlab.workflows.sample_study import SIMULATED, STUDY, sample_study, write_simulated
 from benchlab.workflows.sample_tensile import tensile_text
@@ -77,8 +78,10 @@ def make_sample_data(out: Path, seed: int = 1, progress: Progress | None = None)
         write_clip(out / clip.file, clip, rng, _shifted(progress, index * FRAMES, len(clips) * FRAMES))
         written.append(out / clip.file)
     tables = {"truth.csv": truth_rows(clips), "truth_series.csv": series_rows(clips), "pressure_log.csv": log_rows(),
-              "truth_force.csv": force_rows(seed)}  # fmt: skip
+              "truth_force.csv": force_rows(seed), "explain/loops.csv": measured_rows(seed),
+              "explain/simulated.csv": simulated_rows()}  # fmt: skip
     for name, rows in tables.items():
+        (out / name).parent.mkdir(exist_ok=True)
         _write_csv(out / name, rows)
     texts = sample_texts(clips, seed)
     for name, text in texts.items():

@@ -31,6 +31,7 @@ GUIDES = "\n".join(
         "protocols",
         "drive",
         "runs",
+        "explain",
     )
 )
 SHELL = "\n".join(re.findall(r"```sh\n(.*?)```", README + GUIDES, re.DOTALL))
@@ -42,6 +43,7 @@ REFUSE_TO_REPLACE = (
     "calibrate",
     "cut",
     "design",
+    "explain",
     "export",
     "fit-material",
     "force",

@@ -106,6 +106,8 @@ def test_the_folder_holds_clips_tables_and_a_readme_that_say_they_are_drawn(smal
         "force/tw3_slw10_a1.csv",
         "force/tw3_slw10_a2.csv",
         "force/tw3_slw10_a3.csv",
+        "explain/loops.csv",
+        "explain/simulated.csv",
         "README.md",
     }
     assert {path for path in (tmp_path / "new").rglob("*") if path.is_file()} == set(written)
