@@ -1,4 +1,4 @@
-"""The drawn study of `benchlab explain` in `benchlab sample-data`: three designs in closed form, and an effect that only the measurements have."""
+"""The drawn study of `benchlab explain` among the sample data: designs in closed form, and an effect that only the measurements have."""
 
 from __future__ import annotations
 
