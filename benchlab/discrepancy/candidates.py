@@ -57,7 +57,7 @@ def in_set(problem: Problem, candidate: Fit, best: Fit, bare: Fit, rules: Rules)
     close = max(rules.close, rules.alike * (bare.misfit - best.misfit))
     if candidate is best or candidate.misfit - best.misfit < close:
         return True
-    return p_enough(problem, candidate, best)[1] < rules.rival_t
+    return p_enough(problem, candidate, best)[0] > rules.rival
 
 
 def distinct(fits: Sequence[Fit]) -> list[Fit]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchlab.discrepancy.base import Base
+from benchlab.discrepancy.bank import flexible
 from benchlab.discrepancy.candidates import p_enough
 from benchlab.discrepancy.effects.effect import Effect
 from benchlab.discrepancy.explanation import Curves, Explanation, Found, Gap, Tried
@@ -124,7 +125,7 @@ def _gap(problem: Problem, gap: FloatArray, after: FloatArray, parts: tuple, sum
 
 
 def _tried(problem: Problem, found: Identified) -> tuple[Tried, ...]:
-    bare = nothing(problem)
+    bare, anything = nothing(problem), flexible(problem)
     rows = []
     for one in found.tried:
         p, t = p_enough(problem, one, found.best)
@@ -138,7 +139,15 @@ def _tried(problem: Problem, found: Identified) -> tuple[Tried, ...]:
         )
         form = ", ".join(active.form for active in one.actives)
         rows.append(
-            Tried(one.names, form, one.misfit - bare.misfit, share_explained(problem, bare, one), p, inside, reason)
+            Tried(
+                one.names,
+                form,
+                one.misfit - bare.misfit,
+                share_explained(problem, bare, one, anything),
+                p,
+                inside,
+                reason,
+            )
         )
     return tuple(rows)
 

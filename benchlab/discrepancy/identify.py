@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from benchlab.discrepancy.bank import DRAWS, Bank, bank_of, flexible, principal, scan
+from benchlab.discrepancy.bank import DRAWS, Bank, Scan, bank_of, flexible, principal, scan
 from benchlab.discrepancy.candidates import best_starts, distinct, fits_with, in_set, p_enough, reach
 from benchlab.discrepancy.effects.effect import Effect
 from benchlab.discrepancy.fit import Fit, fit, nothing
@@ -15,6 +15,10 @@ from benchlab.discrepancy.locate import gaps
 from benchlab.discrepancy.problem import Problem, off
 from benchlab.discrepancy.rules import Rules
 from benchlab.units import FloatArray
+
+
+WORSE = 1.5
+"""A model whose means are farther from the measured ones than so many times the base's is no explanation."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +65,8 @@ def identify(
     while True:
         best = tried[0]
         stages.append({"model": " + ".join(best.names), "misfit": best.misfit})
-        left = _left(problem, best, bank, noise, rules)
+        own = forms[tuple(sorted(best.names))]
+        left = _left(problem, best, own, bank, noise, rules)
         if left > rules.further or len(best.names) >= rules.most:
             break
         tell(f"fits of {len(best.names) + 1} effects")
@@ -70,13 +75,15 @@ def identify(
             break
         tried, forms = more, more_forms
     best = tried[0]
-    p_left = scan(problem, anything, best.residual, best.tangent, noise, rules.multiplier).p
-    share = share_explained(problem, bare, best)
+    nuisance = beside(best, forms[tuple(sorted(best.names))])
+    left_over = scan(problem, anything, best.residual, nuisance, noise, rules.multiplier)
+    p_left = left_over.p
+    share = share_explained(problem, bare, best, anything, left_over)
     rivals = tuple(one for one in tried if in_set(problem, one, best, bare, rules))
     verdict = "named" if len(rivals) == 1 else "ambiguous"
     notes: tuple[str, ...] = ()
     if p_left < rules.adequate:
-        if share < rules.share:
+        if share < rules.share[min(len(best.names), len(rules.share)) - 1]:
             verdict = "unexplained"
         else:
             notes = ("named with a remainder",)
@@ -104,17 +111,30 @@ def _extended(
             if key in forms or (could[name] < floor and order.index(name) > 2):
                 continue
             forms[key] = fits_with(problem, one, others, name)
-    fits = distinct([one for group in forms.values() for one in group])
+    fits = distinct([one for group in forms.values() for one in group if _plausible(problem, one)])
     return fits, {key: tuple(group) for key, group in forms.items()}
 
 
-def _left(problem: Problem, best: Fit, bank: Bank, noise: FloatArray, rules: Rules) -> float:
-    """p of no further effect of the vocabulary, beside all that the effects of the model could do in other forms and strengths."""
+def _plausible(problem: Problem, one: Fit) -> bool:
+    """Whether the means are not farther from the model than from the base: what the scatter forgives is no explanation."""
+    before, after = (
+        float(np.sqrt(np.mean(gaps(problem, problem.cells(actives)) ** 2))) for actives in ((), one.actives)
+    )
+    return after < WORSE * before
+
+
+def _left(problem: Problem, best: Fit, forms: Sequence[Fit], bank: Bank, noise: FloatArray, rules: Rules) -> float:
+    """p of no further effect of the vocabulary, beside what the effects of the model do in their other forms."""
     others = bank.of([name for name in dict.fromkeys(a.name for a in bank.actives) if name not in best.names])
     if not others.actives:
         return 1.0
-    own = np.concatenate([best.tangent, principal(bank.of(best.names).directions)], axis=1)
-    return scan(problem, others.directions, best.residual, own, noise, rules.multiplier).p
+    return scan(problem, others.directions, best.residual, beside(best, forms), noise, rules.multiplier).p
+
+
+def beside(best: Fit, forms: Sequence[Fit]) -> FloatArray:
+    """(C, q): what the model can still do: its tangent, and its effects in their other forms."""
+    others = [(one.model - best.model)[:, None] for one in forms if one is not best]
+    return np.concatenate([best.tangent, *others], axis=1)
 
 
 def _worth(problem: Problem, more: Fit, best: Fit, rules: Rules) -> bool:
@@ -124,17 +144,20 @@ def _worth(problem: Problem, more: Fit, best: Fit, rules: Rules) -> bool:
     return bool(np.sqrt(np.mean(moved**2)) > rules.moves * np.sqrt(np.mean(before**2)))
 
 
-def share_explained(problem: Problem, bare: Fit, best: Fit) -> float:
-    """Share of the misfit beyond scatter that is gone: 1 − (Q − Q∞)/(Q0 − Q∞), Q∞ that of a model without fault.
+def share_explained(
+    problem: Problem, bare: Fit, best: Fit, anything: FloatArray, left_over: Scan | None = None
+) -> float:
+    """Share of the misfit that any model could explain which this one does: gained/(gained + what misfits of no particular name still take).
 
-    The misfit of the means alone counts: F features scatter by F."""
-    features = problem.features
-    number = np.bincount(features.feature, minlength=len(features.features))
-    means = np.bincount(features.feature, features.value, minlength=len(number)) / np.maximum(number, 1)
-    within = problem.whiten(features.value - means[features.feature])
-    floor = float(within @ within) + int((number > 0).sum())
-    gap = bare.misfit - floor
-    return float(np.clip(1 - (best.misfit - floor) / gap, 0.0, 1.0)) if gap > 0 else 1.0
+    anything: (C, K) of `flexible`. Noise alone takes as much as there are dimensions, which does not count. left_over: of the scan of what is
+    left: one direction may stand out where all together do not.
+    """
+    gained = bare.misfit - best.misfit
+    basis = principal(anything, 0.02)
+    left = max(float(((basis.T @ best.residual) ** 2).sum()) - basis.shape[1], 0.0)
+    if left_over is not None:
+        left = max(left, left_over.largest**2 - left_over.usual**2)
+    return float(np.clip(gained / (gained + left), 0.0, 1.0)) if gained > 0 else 0.0
 
 
 __all__ = ["Identified", "best_starts", "fit", "identify", "off", "p_enough", "share_explained"]

@@ -28,6 +28,7 @@ def gap_p(problem: Problem, cells: FloatArray, generator: np.random.Generator) -
     features, scatter = problem.features, problem.scatter
     t = np.zeros(len(features.features))
     largest = np.zeros(DRAWS)
+    unknown = np.sqrt(problem.freedom / generator.chisquare(problem.freedom, DRAWS))[:, None]
     for design, where in enumerate(scatter.features_of):
         samples = np.flatnonzero(features.sample_design == design)
         table = np.full((len(samples), len(where)), np.nan)
@@ -40,10 +41,8 @@ def gap_p(problem: Problem, cells: FloatArray, generator: np.random.Generator) -
         sd = np.sqrt(np.diag(scatter.covariance[design])[used])
         lower = np.linalg.cholesky(scatter.covariance[design][np.ix_(used, used)])
         t[where[used]] = _t(table[:, used], sd, known[:, used])
-        draws = generator.standard_normal((DRAWS, len(samples), int(used.sum()))) @ lower.T
-        largest = np.maximum(
-            largest, np.abs(_t(np.where(known[:, used], draws, np.nan), sd, known[:, used])).max(axis=-1)
-        )
+        draws = generator.standard_normal((DRAWS, int(used.sum()))) @ lower.T / np.sqrt(n[used]) * unknown
+        largest = np.maximum(largest, np.abs(draws / (sd / np.sqrt(n[used]))).max(axis=-1))
     return np.asarray((1 + (largest[:, None] >= np.abs(t)[None, :]).sum(axis=0)) / (DRAWS + 1))
 
 

@@ -173,19 +173,23 @@ class Problem:
 
     def largest_t_of_noise(self, directions: FloatArray, noise: FloatArray) -> FloatArray:
         """(draws,): largest t over the directions (C, K) in each draw of `noise`."""
-        scores = np.empty((len(noise), self.samples, directions.shape[1]))
-        ends = [*self._starts[1:], len(directions)]
-        for sample, (first, last) in enumerate(zip(self._starts, ends)):
-            scores[:, sample] = noise[:, first:last] @ directions[first:last]
-        return np.asarray(self._t(scores, self._errors(directions)).max(axis=-1))
+        between, common = self._errors(directions)
+        variance = between.sum(axis=0) + common
+        used = variance > 1e-12
+        return np.asarray((noise @ directions[:, used] / np.sqrt(variance[used])).max(axis=-1))
 
     def noise(self, generator: np.random.Generator, draws: int) -> FloatArray:
-        """(draws, C): whitened draws of scatter between samples and of the systematic error, where nothing else is there."""
+        """(draws, C): whitened draws of scatter between samples and of the systematic error, where nothing else is there.
+
+        The scatter is itself only known from Σ(n − 1) deviations, which its fit follows: each draw's is larger or smaller by √(f/χ²_f).
+        """
+        freedom = max(self.scatter.freedom, 1)
+        unknown = np.sqrt(freedom / generator.chisquare(freedom, draws))[:, None]
         out = np.empty((draws, len(self.features.value)))
         common = generator.standard_normal((draws, len(self.features.features))) * self.systematic
         for alike in self._factors:
             for cells in alike.cells:
-                own = generator.standard_normal((draws, len(cells))) @ alike.scatter.T
+                own = unknown * (generator.standard_normal((draws, len(cells))) @ alike.scatter.T)
                 out[:, cells] = own + solve_triangular(alike.lower, common[:, alike.features].T, lower=True).T
         return out
 
@@ -236,7 +240,8 @@ class Problem:
 
     @property
     def freedom(self) -> float:
-        return PRIOR_FREEDOM + self.scatter.freedom
+        """Of the scatter between samples."""
+        return max(self.scatter.freedom, 1)
 
 
 def off(directions: FloatArray, tangent: FloatArray) -> FloatArray:

@@ -15,6 +15,9 @@ TOLERANCE = 0.02
 HOLD = 0.03
 """A piece that changes by less than this share of the range, and lasts, is a hold."""
 
+BLUNT = 0.15
+"""A stop shorter than this share of the ramps beside it is a blunt turn."""
+
 MOST_PIECES = 200
 
 
@@ -54,7 +57,28 @@ def segments_of(time_s: FloatArray, pressure_MPa: FloatArray) -> list[Segment]:
             merged[-1] = (merged[-1][0], last, direction)
         else:
             merged.append((first, last, direction))
-    return _numbered(time_s, pressure_MPa, merged)
+    return _numbered(time_s, pressure_MPa, _without_blunt_turns(time_s, pressure_MPa, merged))
+
+
+def _without_blunt_turns(
+    time_s: FloatArray, pressure_MPa: FloatArray, pieces: list[tuple[int, int, str]]
+) -> list[tuple[int, int, str]]:
+    """Stops that are short beside the ramps around them are no holds: the turn is at their highest (lowest) point."""
+    kept = list(pieces)
+    i = 1
+    while i < len(kept) - 1:
+        (first, last, direction), (start, _, before), (_, end, after) = kept[i], kept[i - 1], kept[i + 1]
+        beside = min(time_s[first] - time_s[start], time_s[end] - time_s[last])
+        if direction not in ("hold", "rest") or time_s[last] - time_s[first] >= BLUNT * beside:
+            i += 1
+            continue
+        if before == after:
+            kept[i - 1 : i + 2] = [(start, end, before)]
+            continue
+        piece = pressure_MPa[first : last + 1]
+        turn = first + int(np.argmax(piece) if before == "loading" else np.argmin(piece))
+        kept[i - 1 : i + 2] = [(start, turn, before), (turn, end, after)]
+    return kept
 
 
 def _numbered(time_s: FloatArray, pressure_MPa: FloatArray, pieces: list[tuple[int, int, str]]) -> list[Segment]:

@@ -6,7 +6,7 @@ b `softer_per_K`; T: as measured; where it is not, the bench warms by 10 K (chos
 session, t: time since it began, τ `warming_s`. t is start_s + time_s; without start_s the runs of a sample, in their
 order, follow one another without a pause. Where a temperature is given τ does nothing. Through the knob
 `film_modulus` where the base has it, else on the angle as θ/(1 − b·ΔT). Forms: `on the angle`: that in any case;
-`steady`: ΔT = 10 K·t/(2τ), no more than 10 K, which ends as the plain form does.
+`steady`: ΔT = 10 K·t/(2τ), no more than 10 K, which ends as the plain form does; `cooling`: the bench cools by as much.
 By nature confounded: with softening where warming and cycles go together; a rest of the warm bench tells.
 """
 
@@ -61,7 +61,7 @@ class Temperature(Effect):
             "time in which the bench warms (63 % of it)",
         ),
     )
-    forms: ClassVar[tuple[str, ...]] = ("plain", "on the angle", "steady")
+    forms: ClassVar[tuple[str, ...]] = ("plain", "on the angle", "steady", "cooling")
 
     def cannot_show(self, scene: Scene) -> str:
         if np.isfinite(scene.temperature_C).all():
@@ -92,7 +92,8 @@ def _warmer(at: At) -> FloatArray:
     scene, tau = at.scene, at.values["warming_s"]
     since = session_s(scene)
     guessed = np.minimum(since / (2 * tau), 1.0) if at.form == "steady" else -np.expm1(-since / tau)
-    return np.where(np.isfinite(scene.temperature_C), scene.temperature_C - REFERENCE_C, RISE_K * guessed)
+    rise = -RISE_K if at.form == "cooling" else RISE_K
+    return np.where(np.isfinite(scene.temperature_C), scene.temperature_C - REFERENCE_C, rise * guessed)
 
 
 def session_s(scene: Scene) -> FloatArray:
