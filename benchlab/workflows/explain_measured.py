@@ -35,7 +35,9 @@ def explain_measured(
 
     limits: of the bench; None: up to the simulated pressures, as the runs were mounted. Raises InputError where the data carry no verdict.
     """
-    found = explain(measured, base, effects(), seed=seed, progress=progress)
+    there = {active.name for active in base.given}
+    missing = {name: effect for name, effect in effects().items() if name not in there}
+    found = explain(measured, base, missing, seed=seed, progress=progress)
     if progress:
         progress("the next experiment")
     following = next_experiment(found, limits or _limits(measured, base))
