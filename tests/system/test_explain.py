@@ -1,0 +1,237 @@
+"""`benchlab explain` from files to files: what is written, what is refused, and the published table."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from benchlab.io.model_file import read_model
+from benchlab.io.protocol_file import read_protocol
+from benchlab.workflows.sample_explain import measured_rows, simulated_rows
+
+ROOT = Path(__file__).resolve().parents[2]
+PAPER = ROOT / "benchlab" / "published" / "paper_angles.csv"
+Rows = list[dict[str, Any]]
+
+
+@pytest.fixture(scope="session")
+def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Simulated curves of these tests; BENCHLAB_CACHE of whoever runs them is used again where it is set."""
+    return Path(os.environ.get("BENCHLAB_CACHE") or tmp_path_factory.mktemp("curves"))
+
+
+@pytest.fixture(autouse=True)
+def kept(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("BENCHLAB_CACHE", str(cache))
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """With loops.csv, a small part of the sample study, and simulated.csv."""
+    rows = [
+        row for row in measured_rows(1) if row["design"] != "wide" and row["sample"] != "s4" and row["run"] == "fast"
+    ]
+    write(tmp_path / "loops.csv", rows)
+    write(tmp_path / "simulated.csv", simulated_rows())
+    return tmp_path
+
+
+def write(path: Path, rows: Rows) -> Path:
+    with path.open("w", encoding="utf-8", newline="") as file:
+        table = csv.DictWriter(file, list(rows[0]))
+        table.writeheader()
+        table.writerows(rows)
+    return path
+
+
+def read(path: Path) -> Rows:
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def changed(path: Path, change: Callable[[Rows], Rows]) -> Path:
+    return write(path, change(read(path)))
+
+
+def test_a_study_becomes_a_page_numbers_and_a_model(folder: Path, benchlab: Any) -> None:
+    out = folder / "out"
+    given = (folder / "loops.csv", "--simulation", folder / "simulated.csv", "--out", out, "--json")
+    done = benchlab("explain", *given)
+    assert done.code == 0, done.err
+    answer = done.json
+    assert answer["verdict"] == "named" and [effect["name"] for effect in answer["effects"]] == ["friction"]
+    assert "The simulation lacks friction" in done.err and "Simulated data" in done.err
+    assert sorted(path.name for path in out.iterdir()) == [
+        "explain.json",
+        "figures",
+        "model.yaml",
+        "report.html",
+        "tables",
+    ]
+    assert json.loads((out / "explain.json").read_text(encoding="utf-8")) | {"outputs": 0} == answer | {"outputs": 0}
+    assert {Path(path) for path in answer["outputs"]} == {path for path in out.rglob("*") if path.is_file()}
+    model = read_model(out / "model.yaml")
+    assert [effect.name for effect in model.effects] == ["friction"] and model.provenance.simulated
+    assert {one.file for one in model.provenance.measured} == {"loops.csv", "simulated.csv"}
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert "SIMULATED" in page.upper() and "friction" in page
+
+    again = benchlab("explain", folder / "loops.csv", "--model", out / "model.yaml", "--json")
+    assert again.code == 0, again.err
+    assert again.json["verdict"] == "agree" and again.json["model"] is None
+    assert again.json["gap"]["rmse_before"] == pytest.approx(answer["gap"]["rmse_after"], rel=1e-3)
+
+
+def test_files_of_others_stay(folder: Path, benchlab: Any) -> None:
+    out = folder / "out"
+    out.mkdir()
+    (out / "model.yaml").write_text("mine", encoding="utf-8")
+    done = benchlab("explain", folder / "loops.csv", "--simulation", folder / "simulated.csv", "--out", out)
+    assert done.code == 2 and "--overwrite" in done.err
+    assert [path.name for path in out.iterdir()] == ["model.yaml"] and (out / "model.yaml").read_text() == "mine"
+
+
+def test_threads_change_nothing(folder: Path) -> None:
+    def with_threads(count: int) -> dict[str, Any]:
+        names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+        command = [sys.executable, "-m", "benchlab", "explain", "loops.csv", "--simulation", "simulated.csv", "--json"]
+        environment = {**os.environ, **dict.fromkeys(names, str(count))}
+        done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=True)
+        found: dict[str, Any] = json.loads(done.stdout)
+        return found
+
+    one, two = with_threads(1), with_threads(2)
+    assert one["verdict"] == two["verdict"] == "named" and one["rivals"] == two["rivals"]
+    assert one["gap"] == pytest.approx(two["gap"], rel=1e-6)
+    for name, number in one["effects"][0]["parameters"].items():
+        assert two["effects"][0]["parameters"][name]["value"] == pytest.approx(number["value"], rel=1e-6)
+
+
+def backwards(rows: Rows) -> Rows:
+    """One run of two readings changed places in the file, as a clock that is set back writes them."""
+    rows[40]["time_s"], rows[41]["time_s"] = rows[41]["time_s"], rows[40]["time_s"]
+    return rows
+
+
+def renamed(rows: Rows, **names: str) -> Rows:
+    return [{names.get(name, name): value for name, value in row.items()} for row in rows]
+
+
+BAD: dict[str, tuple[Callable[[Rows], Rows], str]] = {
+    "no overlap of designs": (
+        lambda rows: [{**row, "design": "x" + row["design"]} for row in rows],
+        "none of the measured designs is simulated",
+    ),
+    "no overlap of pressures": (
+        lambda rows: [{**row, "pressure_MPa": str(float(row["pressure_MPa"]) + 0.6)} for row in rows],
+        "no measured value lies where there is a simulated curve",
+    ),
+    "one sample": (lambda rows: [row for row in rows if row["sample"] == "s1"], "one sample of each design"),
+    "no unit": (lambda rows: renamed(rows, pressure_MPa="pressure"), "no unit"),
+    "two units": (lambda rows: [{**row, "angle_rad": "1"} for row in rows], "angle"),
+    "no angle": (lambda rows: [{**row, "angle_deg": "NaN"} for row in rows], "cells hold no number"),
+    "words": (lambda rows: [{**row, "angle_deg": "much"} for row in rows], "cells hold no number"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_what_is_refused(name: str, folder: Path, benchlab: Any) -> None:
+    change, words = BAD[name]
+    changed(folder / "loops.csv", change)
+    done = benchlab(
+        "explain", folder / "loops.csv", "--simulation", folder / "simulated.csv", "--out", folder / "out", "--json"
+    )
+    assert done.code == 3 and words in done.err, done.err
+    assert done.json["error"]["code"] == 3
+    assert list((folder / "out").iterdir()) == []
+
+
+def test_time_that_goes_back_is_told(folder: Path, benchlab: Any) -> None:
+    changed(folder / "loops.csv", backwards)
+    done = benchlab("explain", folder / "loops.csv", "--simulation", folder / "simulated.csv", "--strict", "--json")
+    assert done.code == 3 and done.json["verdict"] == "named"
+    assert any("back" in words for words in done.json["warnings"])
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ((), "no dimensions are known of middle, narrow"),
+        (("--simulation", "simulated.csv", "--model", "beam"), "--simulation and --model"),
+        (("--simulation", "gone.csv"), "gone.csv"),
+        (("--samples", "3"), "--samples is given without --loop"),
+        (("--loop", "--out", "out"), "MEASURED is given beside --loop"),
+        (("--simulation", "simulated.csv", "--seed", "-1"), "--seed"),
+    ],
+)
+def test_usage(
+    options: tuple[str, ...], words: str, folder: Path, benchlab: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(folder)
+    done = benchlab("explain", "loops.csv", *options)
+    assert done.code == 2 and words in done.err
+
+
+def names_in(answer: dict[str, Any]) -> Iterator[str]:
+    """Every effect that is named or left."""
+    yield from (effect["name"] for effect in answer["effects"])
+    yield from (name for rival in answer["rivals"] for name in rival)
+
+
+@pytest.fixture(scope="session")
+def fem(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The published simulated angles under names without dimensions: no cell has to be solved for them."""
+    rows = [
+        {"design": f"d{n}", "pressure_MPa": row["pressure_MPa"], "angle_deg": row["fem_angle_deg"]}
+        for n, row in enumerate(paper())
+    ]
+    return write(tmp_path_factory.mktemp("fem") / "fem.csv", rows)
+
+
+def paper() -> Rows:
+    with PAPER.open(encoding="utf-8") as file:
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
+def test_the_published_table_has_a_gap_whose_cause_it_cannot_tell(fem: Path, tmp_path: Path, benchlab: Any) -> None:
+    columns = {
+        "pressure_MPa": "pressure_MPa",
+        "angle_mean_deg": "measured_angle_deg",
+        "angle_sd_deg": "measured_sd_deg",
+        "n": "samples",
+    }
+    rows = [
+        {"design": f"d{n}", **{ours: row[theirs] for ours, theirs in columns.items()}} for n, row in enumerate(paper())
+    ]
+    means = write(tmp_path / "means.csv", [row for row in rows if row["n"]])
+    done = benchlab("explain", means, "--simulation", fem, "--out", tmp_path / "out", "--json")
+    assert done.code == 0, done.err
+    answer = done.json
+    assert answer["verdict"] == "ambiguous" and len(answer["rivals"]) > 1
+    assert ["camera_scale"] in answer["rivals"]
+    assert {region["design"] for region in answer["where"]} == {"d1", "d2", "d6"} and all(
+        region["gap"] < 0 for region in answer["where"]
+    )
+    for name in ("viscoelasticity", "softening", "friction", "regulator_lag"):
+        assert name in answer["not_judged"] and name not in set(names_in(answer))
+    plan = read_protocol(answer["next_experiment"]["protocol"])
+    assert (
+        len({round(abs(float(rate)), 2) for rate in (plan.pressure_MPa[1:] - plan.pressure_MPa[:-1]) * plan.rate_Hz})
+        > 2
+    )
+    assert "scale bar" in answer["next_experiment"]["setup"]
+
+
+def test_without_bulging_windows_the_published_table_names_them(tmp_path: Path, benchlab: Any) -> None:
+    done = benchlab("explain", PAPER, "--model", "beam", "--json")
+    assert done.code == 0, done.err
+    assert done.json["verdict"] == "named" and list(names_in(done.json)) == ["window_ballooning"]
+    assert done.json["gap"]["rmse_after"] < 0.15 * done.json["gap"]["rmse_before"]
