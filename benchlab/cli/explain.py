@@ -12,7 +12,7 @@ import click
 from benchlab.cli.bench_options import BENCHES, calibration_option
 from benchlab.cli.options import Finite
 from benchlab.cli.progress import stages
-from benchlab.errors import InputError, UsageError, printable
+from benchlab.errors import InputError, UsageError, counted, printable
 
 FILE = click.Path(path_type=Path)
 OF_LOOP = {
@@ -139,7 +139,7 @@ def explain(measured: tuple[Path, ...], loop: bool, strict: bool, as_json: bool,
     click.echo("\n".join(told(found.explanation)), err=True)
     if ended := found.answer.get("loop"):
         click.echo(
-            f"\nLoop: {len(ended['rounds'])} rounds on {printable(ended['measured_on'])}; {printable(ended['ended'])}",
+            f"\nLoop: {counted(len(ended['rounds']), 'round')} on {printable(ended['measured_on'])}; {printable(ended['ended'])}",
             err=True,
         )
     _tell_files(found.answer.get("outputs", []))

@@ -6,8 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-import numpy as np
-
 from benchlab.actuator import ShellDesign
 from benchlab.discrepancy.base import Base, DesignBase
 from benchlab.errors import InputError, UsageError, printable
@@ -16,7 +14,6 @@ from benchlab.io.layup_file import read_layup
 from benchlab.io.model_file import ModelEffect, check_source
 from benchlab.io.simulated_table import read_simulated
 from benchlab.simulation.layup import Layup
-from benchlab.units import FloatArray
 from benchlab.workflows.explain_base import base_pressures, beam_base, cell_base, foreign_base
 from benchlab.workflows.model_curves import check_range, model_layup, open_model
 
@@ -195,8 +192,3 @@ def _foreign(
 
 def _own_shapes(curves: Mapping[str, DesignBase]) -> dict[str, ShellDesign]:
     return {name: one.shape for name, one in curves.items() if one.shape is not None}
-
-
-def check_pressures_of(base: Base, count: int = 5) -> FloatArray:
-    """(count,) from 0 to the largest that all designs reach, at which a surrogate is checked."""
-    return np.linspace(0.0, min(base.largest_pressure_MPa(name) for name in base.designs), count)

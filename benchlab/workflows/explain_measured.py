@@ -81,4 +81,5 @@ def _limits(measured: Measured | Summary, base: Base) -> BenchLimits:
     top = max(base.largest_pressure_MPa(name) for name in base.designs)
     mounted = [] if isinstance(measured, Summary) else [run.orientation_deg for run in measured.runs]
     known = [angle for angle in mounted if angle is not None]
-    return BenchLimits(pressure_MPa=top, **({"mounting_deg": float(np.median(known))} if known else {}))
+    limits = BenchLimits(pressure_MPa=top)
+    return replace(limits, mounting_deg=float(np.median(known))) if known else limits

@@ -80,7 +80,7 @@ def written(
             (folder / Path(_path(explanation)).name).write_text(text, encoding="utf-8")
 
     answer = answer_of(explanation, str(outputs.folder / MODEL) if model is not None else None)
-    numbers = plain({"schema": SCHEMA, **answer, **more, "inputs": sums, "provenance": made})
+    numbers: Any = plain({"schema": SCHEMA, **answer, **more, "inputs": sums, "provenance": made})
     whole = write_report(outputs, document, numbers, write_beside)
     return explanation, {**whole, "outputs": [str(path) for path in outputs.paths()]}
 

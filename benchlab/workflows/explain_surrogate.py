@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from benchlab.discrepancy.base import KNOBS
@@ -20,7 +22,7 @@ TELLING_SHARE = 0.25
 """Of the RMS of what was explained, from which the error is a warning (chosen)."""
 
 
-def surrogate_error(found: Explained, chosen: Chosen) -> tuple[dict[str, float | list[str]] | None, tuple[str, ...]]:
+def surrogate_error(found: Explained, chosen: Chosen) -> tuple[dict[str, Any] | None, tuple[str, ...]]:
     """Largest and RMS error in degrees of the curves with the named structural effects, against designs simulated anew with them, and a
     warning where it is large. None where no such effect was named, or the curves are another engine's."""
     actives = (*chosen.base.given, *found.identified.best.actives)

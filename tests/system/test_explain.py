@@ -235,3 +235,38 @@ def test_without_bulging_windows_the_published_table_names_them(tmp_path: Path, 
     assert done.code == 0, done.err
     assert done.json["verdict"] == "named" and list(names_in(done.json)) == ["window_ballooning"]
     assert done.json["gap"]["rmse_after"] < 0.15 * done.json["gap"]["rmse_before"]
+
+
+def test_soft_fingers_of_another_lab_carry_no_verdict(real_folder: Path, benchlab: Any) -> None:
+    """One sample of each configuration, measured once: that they differ may be their scatter."""
+    columns = "design=Configuration,pressure_kPa=Pressure,angle_deg=Theta6"
+    (measured,), (simulated,) = (
+        list((real_folder / "actuators").glob(f"Hiroshan*{kind}*")) for kind in ("Experimental", "Simulation_Data")
+    )
+    done = benchlab(
+        "explain", measured, "--columns", columns, "--simulation", simulated, "--simulation-columns", columns
+    )
+    assert done.code == 3 and "what scatters cannot be told from what is missing" in done.err
+
+
+def test_a_muscle_without_a_simulation_is_refused(real_folder: Path, benchlab: Any) -> None:
+    (muscle,) = (real_folder / "actuators").glob("Agile*")
+    done = benchlab("explain", muscle, "--columns", "force_N=1,pressure_kPa=2,time_s=3")
+    assert done.code == 2 and "--simulation" in done.err
+
+
+def test_the_loop_finds_what_is_hidden_in_the_twin(tmp_path: Path, benchlab: Any) -> None:
+    curves = [row for row in simulated_rows() if row["design"] == "middle"]
+    effects = "".join(f"  {name}: off\n" for name in ("viscoelasticity", "regulator_lag", "line_resistance"))
+    (tmp_path / "twin.yaml").write_text(
+        f"effects:\n  friction: {{half_width_deg_per_MPa: 12}}\n{effects}", encoding="utf-8"
+    )
+    options = ("--simulation", write(tmp_path / "simulated.csv", curves), "--samples", 3, "--rounds", 1)
+    done = benchlab(
+        "explain", "--loop", "--twin", tmp_path / "twin.yaml", *options, "--out", tmp_path / "loop", "--json"
+    )
+    assert done.code == 0, done.err
+    answer = done.json
+    assert answer["simulated"] and len(answer["loop"]["rounds"]) == 1
+    assert "friction" in set(names_in(answer))
+    assert (tmp_path / "loop" / "report.html").is_file() and (tmp_path / "loop" / "round1" / "measured.csv").is_file()

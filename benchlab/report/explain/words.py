@@ -211,11 +211,12 @@ def next_lines(proposed: NextExperiment | None) -> Iterator[str]:
     if proposed is None:
         return
     if proposed.cannot:
-        yield f"cannot be separated on this bench: {cut(proposed.cannot, 300)}"
+        why = proposed.cannot.removeprefix("cannot be separated on this bench: ")
+        yield f"cannot be separated on this bench: {cut(why, 900)}"
     if proposed.separates:
         yield f"separates {cut(proposed.separates, 300)}{_expected(proposed)}"
     if proposed.setup:
-        yield f"first: {cut(proposed.setup, 300)}"
+        yield f"first: {cut(proposed.setup, 900)}"
     if proposed.protocol:
         yield run_command(proposed)
 
