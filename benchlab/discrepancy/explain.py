@@ -8,13 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchlab.discrepancy.base import Base
-from benchlab.discrepancy.bank import flexible
 from benchlab.discrepancy.candidates import p_enough
 from benchlab.discrepancy.effects.effect import Effect
 from benchlab.discrepancy.explanation import Curves, Explanation, Found, Gap, Tried
 from benchlab.discrepancy.fit import nothing
 from benchlab.discrepancy.heldout import held_out, noise_floor, together
-from benchlab.discrepancy.identify import Identified, identify, share_explained
+from benchlab.discrepancy.identify import Identified, gained_share, identify
 from benchlab.discrepancy.intervals import estimates
 from benchlab.discrepancy.locate import gap_p, gaps, regions
 from benchlab.discrepancy.measured import Measured, Summary
@@ -125,7 +124,7 @@ def _gap(problem: Problem, gap: FloatArray, after: FloatArray, parts: tuple, sum
 
 
 def _tried(problem: Problem, found: Identified) -> tuple[Tried, ...]:
-    bare, anything = nothing(problem), flexible(problem)
+    bare = nothing(problem)
     rows = []
     for one in found.tried:
         p, t = p_enough(problem, one, found.best)
@@ -143,7 +142,7 @@ def _tried(problem: Problem, found: Identified) -> tuple[Tried, ...]:
                 one.names,
                 form,
                 one.misfit - bare.misfit,
-                share_explained(problem, bare, one, anything),
+                gained_share(bare, one, found.best, found.share),
                 p,
                 inside,
                 reason,

@@ -7,18 +7,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from benchlab.discrepancy.bank import DRAWS, Bank, Scan, bank_of, flexible, principal, scan
-from benchlab.discrepancy.candidates import best_starts, distinct, fits_with, in_set, p_enough, reach
+from benchlab.discrepancy.bank import DRAWS, Bank, bank_of, flexible, principal, scan
+from benchlab.discrepancy.candidates import distinct, fits_with, in_set, reach
 from benchlab.discrepancy.effects.effect import Effect
-from benchlab.discrepancy.fit import Fit, fit, nothing
+from benchlab.discrepancy.fit import Fit, nothing
 from benchlab.discrepancy.locate import gaps
-from benchlab.discrepancy.problem import Problem, off
+from benchlab.discrepancy.problem import Problem
 from benchlab.discrepancy.rules import Rules
 from benchlab.units import FloatArray
 
 
-WORSE = 1.5
-"""A model whose means are farther from the measured ones than so many times the base's is no explanation."""
+Forms = dict[tuple[str, ...], tuple[Fit, ...]]
+"""By sorted names: the fits in all forms, best first."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ def identify(
     progress: Callable[[str], None] | None = None,
 ) -> Identified:
     """Find the effects of the vocabulary that explain the gap. effects: those that the data can show."""
-    rules = rules or Rules()
+    rules = (rules or Rules()).at(problem.freedom)
     tell = progress or (lambda _: None)
     bare = nothing(problem)
     tell("directions of the effects")
@@ -61,41 +61,42 @@ def identify(
         return Identified(verdict, bare, (), (), (), min(known.p, unknown.p), unknown.p, 0.0)
     tell("fits of one effect")
     tried, forms = _extended(problem, [bare], bank, rules)
-    stages = []
-    while True:
-        best = tried[0]
-        stages.append({"model": " + ".join(best.names), "misfit": best.misfit})
-        own = forms[tuple(sorted(best.names))]
-        left = _left(problem, best, own, bank, noise, rules)
-        if left > rules.further or len(best.names) >= rules.most:
+    if not tried:
+        return Identified("unexplained", bare, (), (), (), min(known.p, unknown.p), unknown.p, 0.0)
+    best = tried[0]
+    left_over = _left_over(problem, best, forms, anything, noise, rules)
+    stages = [{"model": " + ".join(best.names), "misfit": best.misfit, "left": left_over.p}]
+    while len(best.names) < rules.most:
+        if _further(problem, best, forms, bank, noise, rules) > rules.further:
             break
         tell(f"fits of {len(best.names) + 1} effects")
         more, more_forms = _extended(problem, tried[: rules.beam], bank, rules)
-        if not more or not _worth(problem, more[0], best, rules):
+        more = [one for one in more if _worth(problem, one, best, rules)]
+        if not more:
             break
-        tried, forms = more, more_forms
-    best = tried[0]
-    nuisance = beside(best, forms[tuple(sorted(best.names))])
-    left_over = scan(problem, anything, best.residual, nuisance, noise, rules.multiplier)
-    p_left = left_over.p
-    share = share_explained(problem, bare, best, anything, left_over)
+        rest = _left_over(problem, more[0], more_forms, anything, noise, rules)
+        stages.append({"model": " + ".join(more[0].names), "misfit": more[0].misfit, "left": rest.p})
+        if rest.p < rules.adequate and rest.amount > rules.clears * left_over.amount:
+            break  # it does not clear up what was left: no effect that is missing, but the form of the one that is there
+        tried, forms, best, left_over = more, more_forms, more[0], rest
+    p_left, share = left_over.p, share_explained(bare, best, left_over)
     rivals = tuple(one for one in tried if in_set(problem, one, best, bare, rules))
     verdict = "named" if len(rivals) == 1 else "ambiguous"
     notes: tuple[str, ...] = ()
-    if p_left < rules.adequate:
+    if p_left < rules.doubtful and share < rules.half:
+        verdict = "unexplained"
+    elif p_left < rules.adequate:
         if share < rules.share[min(len(best.names), len(rules.share)) - 1]:
             verdict = "unexplained"
         else:
             notes = ("named with a remainder",)
-    own = tuple(one for one in forms.get(tuple(sorted(best.names)), (best,)) if one.misfit - best.misfit < 4.0)
+    own = tuple(one for one in forms[_key(best)] if one.misfit - best.misfit < 4.0)
     return Identified(
         verdict, best, rivals, tuple(tried), own, min(known.p, unknown.p), p_left, share, notes, tuple(stages)
     )
 
 
-def _extended(
-    problem: Problem, before: Sequence[Fit], bank: Bank, rules: Rules
-) -> tuple[list[Fit], dict[tuple[str, ...], tuple[Fit, ...]]]:
+def _extended(problem: Problem, before: Sequence[Fit], bank: Bank, rules: Rules) -> tuple[list[Fit], Forms]:
     """Fits with one effect more than those before: the most promising ones, best first; and by names the fits in all forms."""
     forms: dict[tuple[str, ...], list[Fit]] = {}
     for one in before:
@@ -116,19 +117,39 @@ def _extended(
 
 
 def _plausible(problem: Problem, one: Fit) -> bool:
-    """Whether the means are not farther from the model than from the base: what the scatter forgives is no explanation."""
-    before, after = (
-        float(np.sqrt(np.mean(gaps(problem, problem.cells(actives)) ** 2))) for actives in ((), one.actives)
-    )
-    return after < WORSE * before
+    """Whether the means are not farther from the model than from the base, but for their own error: what scatter forgives explains nothing."""
+    before, after = (float(np.mean(gaps(problem, problem.cells(actives)) ** 2)) for actives in ((), one.actives))
+    return after < before + problem.error_of_means**2
 
 
-def _left(problem: Problem, best: Fit, forms: Sequence[Fit], bank: Bank, noise: FloatArray, rules: Rules) -> float:
+def _further(problem: Problem, best: Fit, forms: Forms, bank: Bank, noise: FloatArray, rules: Rules) -> float:
     """p of no further effect of the vocabulary, beside what the effects of the model do in their other forms."""
     others = bank.of([name for name in dict.fromkeys(a.name for a in bank.actives) if name not in best.names])
     if not others.actives:
         return 1.0
-    return scan(problem, others.directions, best.residual, beside(best, forms), noise, rules.multiplier).p
+    return scan(problem, others.directions, best.residual, beside(best, forms[_key(best)]), noise, rules.multiplier).p
+
+
+@dataclass(frozen=True)
+class Left:
+    """p: of nothing being left beside a model. amount: misfit that is left for any other model, beyond what noise takes."""
+
+    p: float
+    amount: float
+
+
+def _left_over(
+    problem: Problem, best: Fit, forms: Forms, anything: FloatArray, noise: FloatArray, rules: Rules
+) -> Left:
+    """What misfits of no particular name still take: all of them together, or the one that stands out."""
+    found = scan(problem, anything, best.residual, beside(best, forms[_key(best)]), noise, rules.multiplier)
+    basis = principal(anything, 0.02)
+    together = float(((basis.T @ best.residual) ** 2).sum()) - basis.shape[1]
+    return Left(found.p, max(together, found.largest**2 - found.usual**2, 0.0))
+
+
+def _key(one: Fit) -> tuple[str, ...]:
+    return tuple(sorted(one.names))
 
 
 def beside(best: Fit, forms: Sequence[Fit]) -> FloatArray:
@@ -141,23 +162,17 @@ def _worth(problem: Problem, more: Fit, best: Fit, rules: Rules) -> bool:
     """Whether the larger model moves the predictions enough to be worth its name."""
     before = gaps(problem, problem.cells(()))
     moved = gaps(problem, problem.cells(best.actives)) - gaps(problem, problem.cells(more.actives))
-    return bool(np.sqrt(np.mean(moved**2)) > rules.moves * np.sqrt(np.mean(before**2)))
+    needed = rules.moves[min(len(best.names), len(rules.moves)) - 1]
+    return bool(np.sqrt(np.mean(moved**2)) > needed * np.sqrt(np.mean(before**2)))
 
 
-def share_explained(
-    problem: Problem, bare: Fit, best: Fit, anything: FloatArray, left_over: Scan | None = None
-) -> float:
-    """Share of the misfit that any model could explain which this one does: gained/(gained + what misfits of no particular name still take).
-
-    anything: (C, K) of `flexible`. Noise alone takes as much as there are dimensions, which does not count. left_over: of the scan of what is
-    left: one direction may stand out where all together do not.
-    """
+def share_explained(bare: Fit, best: Fit, left: Left) -> float:
+    """Share of the misfit that any model could explain which this one does: gained/(gained + what is left)."""
     gained = bare.misfit - best.misfit
-    basis = principal(anything, 0.02)
-    left = max(float(((basis.T @ best.residual) ** 2).sum()) - basis.shape[1], 0.0)
-    if left_over is not None:
-        left = max(left, left_over.largest**2 - left_over.usual**2)
-    return float(np.clip(gained / (gained + left), 0.0, 1.0)) if gained > 0 else 0.0
+    return float(np.clip(gained / (gained + left.amount), 0.0, 1.0)) if gained > 0 else 0.0
 
 
-__all__ = ["Identified", "best_starts", "fit", "identify", "off", "p_enough", "share_explained"]
+def gained_share(bare: Fit, one: Fit, best: Fit, share: float) -> float:
+    """The same for a candidate beside the best one, whose share is known."""
+    whole = (bare.misfit - best.misfit) / max(share, 1e-9)
+    return float(np.clip((bare.misfit - one.misfit) / whole, 0.0, 1.0)) if whole > 0 else 0.0

@@ -26,7 +26,7 @@ THINNING = 0.0004
 """Systematic error of each feature, as a share of the largest value: runs are evaluated at a few points in each interval."""
 
 
-FORM = 0.05
+FORM = 0.1
 """Error of the form of an effect, as a share of the gap that it is to explain: no equation is exact, and what its form leaves is no further effect."""
 
 
@@ -80,6 +80,15 @@ class Problem:
             variance[where] = np.diag(covariance) / np.maximum(number[where], 1)
         known = mine & (number > 0)
         return float(np.sqrt(max(float(np.mean((measured - base)[known] ** 2 - variance[known])), 0.0)))
+
+    @cached_property
+    def error_of_means(self) -> float:
+        """RMS standard error of the features' means over samples, in the unit of the quantity."""
+        number = np.bincount(self.features.feature, minlength=len(self.features.features))
+        variance = np.empty(len(number))
+        for where, covariance in zip(self.scatter.features_of, self.scatter.covariance):
+            variance[where] = np.diag(covariance) / np.maximum(number[where], 1)
+        return float(np.sqrt(np.mean(variance)))
 
     @cached_property
     def _factors(self) -> list[_Alike]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
@@ -11,19 +11,28 @@ class Rules:
     (the fitted scatter is itself uncertain). rival: a candidate that the best one speaks against with a smaller p is out.
     close: a candidate within this −2 log L of the best stays in; alike: or within this share of what the best explains, as forms are not
     known better. adequate: smallest p of the flexible test at which nothing is left.
-    share: explained share from which one, two, three effects are named although something is left. moves: smallest RMS that a further effect must move,
-    as a share of the first one's. most: effects in one model. beam: fits that are carried on.
+    doubtful, half: with a p below the first,
+    a model that explains less than the second share is no explanation. share: explained share from which one, two, three effects are named although something is left. moves: smallest RMS that a second, a third effect must move,
+    as a share of the first one's. clears: or what is left to any model falls to this share of it. most: effects in one model. beam: fits that are carried on.
     """
 
     first: float = 0.05
-    further: float = 0.01
+    further: float = 0.005
     multiplier: float = 1.12
-    rival: float = 0.003
+    rival: float = 0.001
     close: float = 2.0
-    alike: float = 0.0025
+    alike: float = 0.005
     adequate: float = 0.01
+    doubtful: float = 0.1
+    half: float = 0.65
     share: tuple[float, ...] = (0.75, 0.9, 0.95)
-    moves: float = 0.25
+    moves: tuple[float, ...] = (0.25, 0.4)
+    clears: float = 0.5
     most: int = 3
     beam: int = 3
     tries: int = 6
+
+    def at(self, freedom: float) -> Rules:
+        """With the multiplier of a study of so many degrees of freedom: 1 up to 10, all of it from 20, as calibrated."""
+        part = min(max((freedom - 10) / 10, 0.0), 1.0)
+        return replace(self, multiplier=1 + part * (self.multiplier - 1))

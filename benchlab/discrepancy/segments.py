@@ -68,12 +68,14 @@ def _without_blunt_turns(
     i = 1
     while i < len(kept) - 1:
         (first, last, direction), (start, _, before), (_, end, after) = kept[i], kept[i - 1], kept[i + 1]
-        beside = min(time_s[first] - time_s[start], time_s[end] - time_s[last])
+        sides = (time_s[first] - time_s[start], time_s[end] - time_s[last])
+        beside = sum(sides) if before == after else min(sides)
         if direction not in ("hold", "rest") or time_s[last] - time_s[first] >= BLUNT * beside:
             i += 1
             continue
         if before == after:
             kept[i - 1 : i + 2] = [(start, end, before)]
+            i = max(i - 1, 1)
             continue
         piece = pressure_MPa[first : last + 1]
         turn = first + int(np.argmax(piece) if before == "loading" else np.argmin(piece))

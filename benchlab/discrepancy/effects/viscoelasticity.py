@@ -5,7 +5,7 @@
 a `late_share`, τ `time_s`; u: angle so far, taken for the one at rest after a long time. Forms: `two times`: halves
 with τ/r and τ·r, r = √10; `log time`: five equal parts spread over τ/30 … τ·30, which creeps with log t as
 polyurethanes do; `creep on top`: θ = u + a·x', x' the slow part's departure from the run's start, so that u is the
-response at once.
+response at once; `log creep on top`: that with the times of `log time`.
 By nature confounded: with friction at one rate without a hold; with regulator_lag where τ is short and all designs
 are fast alike.
 """
@@ -25,6 +25,7 @@ SPREAD: dict[str, FloatArray] = {
     "two times": np.sqrt(10.0) ** np.array([-1, 1]),
     "log time": np.geomspace(1 / 30, 30, 5),
     "creep on top": np.ones(1),
+    "log creep on top": np.geomspace(1 / 30, 30, 5),
 }
 """Time constants of equal parts, over τ; chosen."""
 
@@ -54,6 +55,6 @@ class Viscoelasticity(Effect):
 
     def angle(self, angle_deg: FloatArray, at: At) -> FloatArray:
         late = at.scene.follow_several(angle_deg, at.values["time_s"] * SPREAD[at.form])
-        if at.form == "creep on top":
+        if at.form.endswith("on top"):
             return angle_deg + at.values["late_share"] * (late - angle_deg[0])
         return angle_deg + at.values["late_share"] * (late - angle_deg)
