@@ -27,6 +27,7 @@ from benchlab.workflows.explain_base import base_pressures, cell_base, foreign_b
 from benchlab.workflows.explain_cache import default_cache
 from benchlab.workflows.explain_chosen import DEFAULT_MATERIAL, Choice, Chosen, Wanted, choose_base
 from benchlab.workflows.explain_measured import explain_measured
+from benchlab.workflows.explain_next import LIMIT_MPa
 from benchlab.workflows.explain_outputs import ExplainOutputs, written
 from benchlab.workflows.explain_read import read_explained
 from benchlab.workflows.explain_surrogate import surrogate_error
@@ -154,7 +155,9 @@ def explain_frame(
     answer = answer_of(found.explanation)
     following = found.explanation.next_experiment
     if following is not None and following.experiment is not None:
-        answer["next_experiment"]["protocol"] = protocol_of(following.experiment, largest_MPa(measured) * 1.1)
+        known = following.expected_sd if np.isfinite(following.expected_sd) else None
+        top = max(float(following.experiment.trace()[1].max()), LIMIT_MPa)
+        answer["next_experiment"]["protocol"] = protocol_of(following.experiment, top, following.separates, known)
     return {**answer, "every_fit": _every_fit(found)} if every_fit else answer
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,7 +16,7 @@ from benchlab.discrepancy.explanation import NextExperiment
 from benchlab.discrepancy.foreseen import foreseen
 from benchlab.discrepancy.intervals import covariance
 from benchlab.discrepancy.measured import Measured, Summary
-from benchlab.discrepancy.next_experiment import BESIDE, default_proposal, proposal
+from benchlab.discrepancy.next_experiment import BESIDE, Proposal, default_proposal, proposal
 from benchlab.discrepancy.separation import Rival
 
 MOST_RIVALS = 6
@@ -61,7 +61,19 @@ def next_experiment(found: Explained, limits: BenchLimits) -> NextExperiment | N
     rivals = [Rival(fit.actives, covariance(problem, fit)) for fit in found.identified.rivals[:MOST_RIVALS]]
     samples = max(1, int(np.median(np.bincount(problem.features.sample_design))))
     designs = [name for name in problem.scene.names if len(problem.scene.base.designs[name].pressure_MPa) > 1]
-    return proposal(problem.scene.base, designs, rivals, foreseen(problem, samples, quantity), limits, quantity).told
+    noise = foreseen(problem, samples, quantity)
+    return _separating(lambda some: proposal(problem.scene.base, designs, some, noise, limits, quantity), rivals)
+
+
+def _separating(propose: Callable[[Sequence[Rival]], Proposal], rivals: list[Rival]) -> NextExperiment:
+    """The experiment for these rivals; where two of them cannot be separated, which is told, that for the others and one of the two."""
+    found = propose(rivals)
+    cannot = found.told.cannot
+    while found.told.experiment is None and found.considered and len(rivals) > 2:
+        twin = found.considered[0].pair[1]
+        rivals = [rival for place, rival in enumerate(rivals) if place != twin]
+        found = propose(rivals)
+    return replace(found.told, cannot=cannot)
 
 
 def main_quantity(found: Explained) -> str:
