@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from benchlab.discrepancy.base import Base
 from benchlab.discrepancy.effects.catalogue import effects
@@ -37,10 +38,11 @@ def explain_measured(
     """
     there = {active.name for active in base.given}
     missing = {name: effect for name, effect in effects().items() if name not in there}
-    found = explain(measured, base, missing, seed=seed, progress=progress)
-    if progress:
-        progress("the next experiment")
-    following = next_experiment(found, limits or _limits(measured, base))
+    with threadpool_limits(1):  # of BLAS: its matrices are small, and more threads only wait for each other
+        found = explain(measured, base, missing, seed=seed, progress=progress)
+        if progress:
+            progress("the next experiment")
+        following = next_experiment(found, limits or _limits(measured, base))
     return replace(found, explanation=replace(found.explanation, next_experiment=following))
 
 
