@@ -1,4 +1,4 @@
-"""Directions in which the data would move: of every effect of the vocabulary, at several strengths, and of misfits of no particular name."""
+"""Directions in which data would move: by every effect of the vocabulary, at several strengths, and by misfits of no name."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from benchlab.discrepancy.problem import Problem, off
 from benchlab.units import FloatArray
 
 DRAWS = 400
+"""Of scatter, for the p of the largest t (chosen)."""
+
 MOST_STARTS = 12
 """Combinations of starting values of one effect."""
 
@@ -32,12 +34,18 @@ class Bank:
 
 def bank_of(problem: Problem, effects: Sequence[Effect]) -> Bank:
     """Every effect alone, in each of its forms, from each of its starting values."""
-    actives, directions = [], []
+    actives: list[Active] = []
+    directions: list[FloatArray] = []
     for effect in effects:
+        first: dict[tuple[float, ...], FloatArray] = {}
         for form, values in itertools.product(effect.forms, starts_of(effect)):
             active = Active(effect, values, form)
             direction = problem.model((active,)) - problem.base
-            if np.isfinite(direction).all() and float(direction @ direction) > 1e-8:
+            plain = first.setdefault(tuple(values.values()), direction)
+            same = plain is not direction and np.array_equal(
+                plain, direction
+            )  # a form that these data do not tell from the plain one
+            if not same and np.isfinite(direction).all() and float(direction @ direction) > 1e-8:
                 actives.append(active)
                 directions.append(direction)
     columns = np.array(directions).T if directions else np.zeros((len(problem.whitened), 0))
@@ -55,8 +63,9 @@ def starts_of(effect: Effect) -> list[dict[str, float]]:
 
 @dataclass(frozen=True)
 class Scan:
-    """t: (K,) along each direction; p: of the largest being there by scatter alone, all directions considered; best: its index, −1 without any.
-    usual: largest t that scatter alone stays below in 95 of 100."""
+    """t: (K,) along each direction, 0 for those that the tangent spans; p: of the largest being there by scatter alone, all directions
+    considered; best: its index, −1 without any. usual: what the largest t of scatter alone stays below in 95 of 100 draws.
+    """
 
     t: FloatArray
     p: float
@@ -75,7 +84,9 @@ def scan(
 ) -> Scan:
     """Is there more in the residual (C,) than scatter, along the directions (C, K) as far as the tangent (C, q) does not span them?
 
-    noise: (draws, C), of Problem.noise."""
+    noise: (draws, C), of Problem.noise. p = (1 + draws whose largest t, times the multiplier, is not smaller)/(draws + 1): one-sided,
+    as effects push one way, and simultaneous over all directions.
+    """
     free = off(directions, tangent)
     kept = (free**2).sum(axis=0) > 1e-4 * np.maximum((directions**2).sum(axis=0), 1e-12)
     if not kept.any():
@@ -89,7 +100,12 @@ def scan(
 
 
 def flexible(problem: Problem) -> FloatArray:
-    """(C, K): misfits of no particular name: of each kind of run, direction, cycle and design, shapes over pressure and time; both signs."""
+    """(C, K): misfits of no name, whitened, of length 1, with both signs.
+
+    Over each group of features (all; of a design, kind of run, direction, cycle; of a kind in one direction or cycle) a constant, powers
+    to the third and a sine of pressure, as a share of the base's largest value of the design; in holds the logarithm of time; in each
+    design and direction a constant, pressure and its square.
+    """
     features = problem.features.features
     pressure = np.array([feature.pressure_MPa for feature in features])
     x = pressure / max(float(pressure.max()), 1e-12)
@@ -99,7 +115,7 @@ def flexible(problem: Problem) -> FloatArray:
     direction = np.array([feature.direction for feature in features])
     cycle = np.array([feature.cycle for feature in features])
     late = np.array([np.log1p(max(feature.time_s, 0.0)) for feature in features])
-    base = _feature_base(problem)
+    base = problem.mean_over_samples(problem.cells(()))
     shapes = [np.ones_like(x), x, x**2, x**3, np.sin(2 * np.pi * x)]
     columns = []
     for name in sorted(set(quantity)):
@@ -139,14 +155,6 @@ def flexible(problem: Problem) -> FloatArray:
     sizes = np.sqrt((white**2).sum(axis=0))
     white = white[:, sizes > 1e-9] / sizes[sizes > 1e-9]
     return np.concatenate([white, -white], axis=1)
-
-
-def _feature_base(problem: Problem) -> FloatArray:
-    """(F,): what the base gives, on average over samples."""
-    cells = problem.cells(())
-    number = np.bincount(problem.features.feature, minlength=len(problem.features.features))
-    total = np.bincount(problem.features.feature, cells, minlength=len(number))
-    return np.asarray(total / np.maximum(number, 1))
 
 
 def principal(directions: FloatArray, share: float = 0.05) -> FloatArray:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
 from scipy import stats
 
-from benchlab.discrepancy.bank import Bank, principal
+from benchlab.discrepancy.bank import Bank
 from benchlab.discrepancy.effects.effect import Active
 from benchlab.discrepancy.fit import Fit, fit
 from benchlab.discrepancy.problem import Problem, off
@@ -15,12 +16,13 @@ from benchlab.units import FloatArray
 
 
 def reach(bank: Bank, residual: FloatArray, tangent: FloatArray) -> dict[str, float]:
-    """By name: how much of |residual|² the directions of an effect could explain beside the tangent, as if they were linear."""
+    """By name: how much of |residual|² the best direction of an effect explains beside the tangent, with the sign that it has."""
     free = off(bank.directions, tangent)
-    out = {}
-    for name in dict.fromkeys(active.name for active in bank.actives):
-        basis = principal(free[:, [i for i, active in enumerate(bank.actives) if active.name == name]])
-        out[name] = float(((basis.T @ residual) ** 2).sum())
+    sizes, along = (free**2).sum(axis=0), residual @ free
+    explained = np.divide(np.maximum(along, 0.0) ** 2, sizes, out=np.zeros_like(sizes), where=sizes > 1e-6)
+    out: dict[str, float] = {}
+    for active, value in zip(bank.actives, explained):
+        out[active.name] = max(out.get(active.name, 0.0), float(value))
     return out
 
 

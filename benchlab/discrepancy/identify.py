@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from benchlab.discrepancy.bank import DRAWS, Bank, bank_of, flexible, principal, scan
-from benchlab.discrepancy.candidates import distinct, fits_with, in_set, reach
+from benchlab.discrepancy.candidates import distinct, fits_with, in_set, p_enough, reach
 from benchlab.discrepancy.effects.effect import Effect
 from benchlab.discrepancy.fit import Fit, nothing
 from benchlab.discrepancy.locate import gaps
@@ -66,11 +66,12 @@ def identify(
     best = tried[0]
     left_over = _left_over(problem, best, forms, anything, noise, rules)
     stages = [{"model": " + ".join(best.names), "misfit": best.misfit, "left": left_over.p}]
+    smaller: list[Fit] = []
     while len(best.names) < rules.most:
         if _further(problem, best, forms, bank, noise, rules) > rules.further:
             break
         tell(f"fits of {len(best.names) + 1} effects")
-        more, more_forms = _extended(problem, tried[: rules.beam], bank, rules)
+        more, more_forms = _extended(problem, _carried(tried, bare, rules), bank, rules)
         more = [one for one in more if _worth(problem, one, best, rules)]
         if not more:
             break
@@ -78,9 +79,12 @@ def identify(
         stages.append({"model": " + ".join(more[0].names), "misfit": more[0].misfit, "left": rest.p})
         if rest.p < rules.adequate and rest.amount > rules.clears * left_over.amount:
             break  # it does not clear up what was left: no effect that is missing, but the form of the one that is there
+        smaller.append(best)
         tried, forms, best, left_over = more, more_forms, more[0], rest
     p_left, share = left_over.p, share_explained(bare, best, left_over)
-    rivals = tuple(one for one in tried if in_set(problem, one, best, bare, rules))
+    enough = [one for one in smaller if p_enough(problem, one, best)[0] > rules.rival]
+    rivals = (*(one for one in tried if in_set(problem, one, best, bare, rules)), *enough)
+    tried = [*tried, *smaller]
     verdict = "named" if len(rivals) == 1 else "ambiguous"
     notes: tuple[str, ...] = ()
     if p_left < rules.doubtful and share < rules.half:
@@ -106,7 +110,7 @@ def _extended(problem: Problem, before: Sequence[Fit], bank: Bank, rules: Rules)
         could = reach(others, one.residual, one.tangent)
         order = sorted(could, key=lambda name: -could[name])
         wanted = order if not one.names else order[: rules.tries]
-        floor = 0.3 * could[order[0]]
+        floor = 0.25 * could[order[0]]
         for name in wanted:
             key = tuple(sorted((*one.names, name)))
             if key in forms or (could[name] < floor and order.index(name) > 2):
@@ -114,6 +118,12 @@ def _extended(problem: Problem, before: Sequence[Fit], bank: Bank, rules: Rules)
             forms[key] = fits_with(problem, one, others, name)
     fits = distinct([one for group in forms.values() for one in group if _plausible(problem, one)])
     return fits, {key: tuple(group) for key, group in forms.items()}
+
+
+def _carried(tried: Sequence[Fit], bare: Fit, rules: Rules) -> list[Fit]:
+    """Those to which further effects are added: the best ones, as far as they are near the best."""
+    near = rules.near * (bare.misfit - tried[0].misfit) + rules.close * 20
+    return [one for one in tried[: rules.beam] if one.misfit - tried[0].misfit < near]
 
 
 def _plausible(problem: Problem, one: Fit) -> bool:

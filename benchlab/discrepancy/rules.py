@@ -13,11 +13,12 @@ class Rules:
     known better. adequate: smallest p of the flexible test at which nothing is left.
     doubtful, half: with a p below the first,
     a model that explains less than the second share is no explanation. share: explained share from which one, two, three effects are named although something is left. moves: smallest RMS that a second, a third effect must move,
-    as a share of the first one's. clears: or what is left to any model falls to this share of it. most: effects in one model. beam: fits that are carried on.
+    as a share of the first one's. clears: or what is left to any model falls to this share of it. most: effects in one model. beam: fits that are carried on, near: if within this share of what the best
+    explains. tries: effects that are tried beside each.
     """
 
     first: float = 0.05
-    further: float = 0.005
+    further: float = 0.01
     multiplier: float = 1.12
     rival: float = 0.001
     close: float = 2.0
@@ -30,7 +31,8 @@ class Rules:
     clears: float = 0.5
     most: int = 3
     beam: int = 3
-    tries: int = 6
+    near: float = 0.05
+    tries: int = 8
 
     def at(self, freedom: float) -> Rules:
         """With the multiplier of a study of so many degrees of freedom: 1 up to 10, all of it from 20, as calibrated."""

@@ -18,6 +18,7 @@ from typing import ClassVar
 import numpy as np
 
 from benchlab.discrepancy.effects.effect import At, Effect, Parameter
+from benchlab.discrepancy.scene import Scene
 from benchlab.units import FloatArray
 
 ATTITUDE_deg = {"standing": 180.0, "level, bending up": 90.0, "level, bending down": -90.0}
@@ -53,6 +54,13 @@ class Gravity(Effect):
     )
     forms: ClassVar[tuple[str, ...]] = ("plain", "secant", *ATTITUDE_deg)
     seen_in: ClassVar[tuple[str, ...]] = ("angle_deg", "flex_V")
+
+    def cannot_show(self, scene: Scene) -> str:
+        return (
+            ""
+            if np.isfinite(scene.orientation_deg).all()
+            else "how the samples were mounted is not known (orientation_deg)"
+        )
 
     def angle(self, angle_deg: FloatArray, at: At) -> FloatArray:
         scene = at.scene
