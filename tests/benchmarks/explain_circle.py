@@ -1,20 +1,24 @@
 """The circle of `benchlab explain`: effects hidden in the twin, drawn by seed → protocol → twin → camera → table → explained from the tables alone.
 
 `python -m tests.benchmarks.explain_circle` prints one row a case and how many were named right; `--cases 0:5` takes some of them, `--film` draws each
-run as a film and analyses it (a minute a run), `--rounds 2` also runs what is proposed. Curves are in closed form (tests/unit/discrepancy/scenes), with
-`--cell` those of the shell cell. The twin's effects share no code with those of the discrepancies: other forms, other numerics.
+run as a film and analyses it (a minute a run), `--rounds 2` also runs what is proposed. `--out FILE` writes the page of docs/benchmarks; rows that are
+in it from an earlier call stay, so that the cases may be run in parts. Curves are in closed form (tests/unit/discrepancy/scenes), with `--cell` those
+of the shell cell. The twin's effects share no code with those of the discrepancies: other forms, other numerics.
 """
 
 from __future__ import annotations
 
 import argparse
+import platform
 import tempfile
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from datetime import date
 from pathlib import Path
 
 import numpy as np
+import scipy
 
 from benchlab.actuator import ShellDesign
 from benchlab.discrepancy.base import Base
@@ -49,9 +53,10 @@ DRAWN: dict[str, dict[str, tuple[float, float]]] = {
     "marker_offset": {"offset_mm": (5, 12)},
     "clock_offset": {"ahead_s": (0.15, 0.5)},
 }
-"""Effects that are hidden, one at a time, and between what their parameters are drawn; others keep their typical values.
+"""Effects that are hidden, one at a time, and between what their parameters are drawn; others keep their typical values."""
 
-Not regulator_lag: the twin's monitor reads behind the regulator, so that its lag is in the recorded pressure and there is no gap."""
+RECORDED: dict[str, dict[str, tuple[float, float]]] = {"regulator_lag": {"lag_s": (0.15, 0.5)}}
+"""The same, of what is no gap: the twin's monitor reads behind the regulator, so that its lag is in the recorded pressure."""
 
 NULLS = 2
 ALWAYS = ("dac_steps", "sensor_noise")
@@ -60,19 +65,20 @@ ALWAYS = ("dac_steps", "sensor_noise")
 
 @dataclass(frozen=True)
 class Case:
-    """name: of the hidden effect, "" where nothing is. twin: with it."""
+    """name: of the hidden effect, "" where nothing is. missing: whether the simulation lacks it. twin: with it."""
 
     name: str
+    missing: bool
     parameters: Mapping[str, float]
     twin: TwinSettings
 
 
 def cases(seed: int) -> list[Case]:
     found = []
-    for index, name in enumerate((*DRAWN, *[""] * NULLS)):
+    for index, name in enumerate((*DRAWN, *[""] * NULLS, *RECORDED)):
         rng = np.random.default_rng([seed, index])
-        drawn = {key: float(rng.uniform(*between)) for key, between in DRAWN.get(name, {}).items()}
-        found.append(Case(name, drawn, twin_with({name: drawn} if name else {})))
+        drawn = {key: float(rng.uniform(*between)) for key, between in (DRAWN | RECORDED).get(name, {}).items()}
+        found.append(Case(name, name in DRAWN, drawn, twin_with({name: drawn} if name else {})))
     return found
 
 
@@ -94,9 +100,9 @@ def explained(tables: Sequence[Path], base: Base, limits: BenchLimits) -> Explan
 
 
 def judged(case: Case, found: Explanation) -> str:
-    """right, in the set, wrong, missed, or false: a name where nothing was hidden."""
+    """right, in the set, wrong, missed, or false: a name where nothing is missing."""
     sets = [{effect.name for effect in found.effects}] if found.verdict == "named" else [set(s) for s in found.rivals]
-    if not case.name:
+    if not case.missing:
         return "right" if found.verdict == "agree" else "false" if sets else "missed"
     if not any(sets):
         return "missed"
@@ -106,13 +112,48 @@ def judged(case: Case, found: Explanation) -> str:
 
 
 def told(case: Case, found: Explanation, took_s: float) -> str:
-    names = " | ".join("+".join(names) for names in found.rivals) or "+".join(effect.name for effect in found.effects)
+    names = " or ".join("+".join(names) for names in found.rivals) or "+".join(effect.name for effect in found.effects)
     drawn = ", ".join(f"{name} {value:.3g}" for name, value in case.parameters.items())
     gap = found.gap
     return (
-        f"| {case.name or 'nothing'} | {drawn} | {found.verdict} | {names} | {judged(case, found)} | {gap.rmse_before:.2f} → {gap.rmse_after:.2f} "
+        f"{case.name or 'nothing'} | {drawn} | {found.verdict} | {names} | {judged(case, found)} | {gap.rmse_before:.2f} → {gap.rmse_after:.2f} "
         f"({gap.noise_floor:.2f}) | {took_s:.0f} |"
     )
+
+
+HEAD = "| case | hidden | drawn | verdict | names | | gap before → after (noise floor), ° | s |\n|---|---|---|---|---|---|---|---|"
+JUDGED = 5
+"""Column of the judgement, after the number of the case."""
+
+
+def counted(rows: Mapping[int, str]) -> str:
+    words = [row.split("|")[JUDGED - 1].strip() for row in rows.values()]
+    return ", ".join(f"{words.count(word)} {word}" for word in sorted(set(words)))
+
+
+def page(rows: Mapping[int, str], how: str) -> str:
+    versions = f"Python {platform.python_version()}, NumPy {np.__version__}, SciPy {scipy.__version__}"
+    return f"""# Effects hidden in the twin and found again, {date.today().isoformat()}
+
+Written by `{how}`, {versions}. Everything in it is simulated. One effect is hidden in a twin whose samples scatter; a protocol is run on
+it, and the tables that come out are all that the explanation sees. The protocol is the one with which every loop begins. The seconds are of the whole
+way, on a machine that did other things too; they measure nothing.
+
+`right`: that name alone, or `agree` where nothing is missing. `in the set`: among rivals that these data cannot tell apart. `missed`: no name. `wrong`:
+another one. `false`: a name where nothing is missing. The lag of the regulator is in the recorded pressure, so that nothing is missing there.
+
+{HEAD}
+{chr(10).join(f"| {number} | {row}" for number, row in sorted(rows.items()))}
+
+{len(rows)} of {len(DRAWN) + NULLS + len(RECORDED)} cases: {counted(rows)}.
+"""
+
+
+def written_before(path: Path) -> dict[int, str]:
+    """Rows of an earlier call, by number of the case."""
+    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+    cells = [line[2:].split(" | ", 1) for line in lines if line.startswith("| ")]
+    return {int(number): row for number, row in cells if number.isdigit()}
 
 
 def main() -> None:
@@ -123,21 +164,26 @@ def main() -> None:
     options.add_argument("--rounds", type=int, default=1)
     options.add_argument("--film", action="store_true")
     options.add_argument("--cell", action="store_true")
+    options.add_argument("--out", type=Path)
     options.add_argument("--cache", type=Path, default=Path(tempfile.gettempdir()) / "benchlab-circle")
     given = options.parse_args()
     given.cache.mkdir(exist_ok=True)
     base = cell_of(given.cache) if given.cell else closed_form(len(SHAPES))
-    first, last = (int(part) if part else None for part in given.cases.split(":"))
-    verdicts = []
-    print("| hidden | drawn | verdict | names | | gap, ° (floor) | s |\n|---|---|---|---|---|---|---|", flush=True)
-    for case in cases(given.seed)[first:last]:
+    chosen = slice(*(int(part) if part else None for part in given.cases.split(":")))
+    rows = written_before(given.out) if given.out else {}
+    how = f"python -m tests.benchmarks.explain_circle --seed {given.seed} --samples {given.samples} --rounds {given.rounds}"
+    how += " --film" * given.film + " --cell" * given.cell
+    print(HEAD, flush=True)
+    for number, case in list(enumerate(cases(given.seed)))[chosen]:
         began = time.perf_counter()
         with tempfile.TemporaryDirectory() as folder:
             settings = LoopSettings(Path(folder, "loop"), samples=given.samples, rounds=given.rounds)
             loop = explain_loop(settings, TwinLab(base, case.twin, given.seed, given.film), base, explained)
-        verdicts.append(judged(case, loop.explanation))
-        print(told(case, loop.explanation, time.perf_counter() - began), flush=True)
-    print({word: verdicts.count(word) for word in sorted(set(verdicts))})
+        rows[number] = told(case, loop.explanation, time.perf_counter() - began)
+        print(f"| {number} | {rows[number]}", flush=True)
+        if given.out:
+            given.out.write_text(page(rows, how), encoding="utf-8")
+    print(counted(rows))
 
 
 if __name__ == "__main__":

@@ -31,7 +31,11 @@ segments:
   - triangle: {low_MPa: 0, high_MPa: 0.35, rate_MPa_per_s: 0.14, cycles: 1}
   - vent: {duration_s: 1}
 """
-HIDDEN = {"dead_pressure": ("dead_MPa", 0.03, 0.05), "end_caps": ("cap_mm", 15, 25)}
+HIDDEN = {
+    "dead_pressure": ("dead_MPa", 0.03, 0.05),
+    "end_caps": ("cap_mm", 15, 25),
+    "regulator_lag": ("lag_s", 0.4, 0.6),
+}
 
 
 def circle(folder: Path, name: str, film: bool) -> Loop:
@@ -61,6 +65,16 @@ def test_an_effect_hidden_in_the_twin_is_found(name: str, film: bool, tmp_path: 
     assert any(name in names for names in sets), (found.verdict, sets)
     assert found.gap.rmse_after < 0.5 * found.gap.rmse_before
     check_tables(loop.rounds[0].round.folder, film)
+
+
+def test_a_lag_that_the_recorded_pressure_shows_is_no_gap(tmp_path: Path) -> None:
+    """The monitor reads behind the regulator: recorded and asked for differ, the angle is that of the recorded pressure."""
+    loop = circle(tmp_path, "regulator_lag", film=False)
+    measured = read_measured([loop.rounds[0].round.folder / "measured.csv"])
+    assert isinstance(measured, Measured)
+    behind = [np.abs(np.subtract(run.command_MPa, run.pressure_MPa)) for run in measured.runs]
+    assert all(np.median(off) > 0.03 for off in behind)
+    assert loop.explanation.verdict == "agree" and not loop.explanation.where
 
 
 def check_tables(folder: Path, film: bool) -> None:
