@@ -9,6 +9,7 @@ import numpy as np
 
 from benchlab.discrepancy.base import Base
 from benchlab.discrepancy.candidates import p_enough
+from benchlab.discrepancy.describe import NOT_JUDGED, described
 from benchlab.discrepancy.effects.effect import Effect
 from benchlab.discrepancy.explanation import Curves, Explanation, Found, Gap, Tried
 from benchlab.discrepancy.fit import nothing
@@ -41,21 +42,27 @@ def explain(
     rules: Rules | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Explained:
-    """Explain the gap between what was measured and the base. seed: of the bootstrap. Raises InputError where the data cannot carry a verdict."""
+    """Explain the gap between what was measured and the base; where nothing scatters, describe it. seed: of the bootstrap.
+
+    Raises InputError where nothing can be compared.
+    """
     tell = progress or (lambda _: None)
     tell("features and scatter of the samples")
     problem, warnings = prepared(measured, base)
     generator = np.random.default_rng(seed)
-    refused = {name: reason for name, effect in effects.items() if (reason := effect.cannot_show(problem.scene))}
+    summary = isinstance(measured, Summary)
+    tested = problem.scatter.freedom > 0
+    refused = {name: reason for name, effect in effects.items() if (reason := _cannot_show(effect, problem))}
     usable = [effect for name, effect in effects.items() if name not in refused]
-    found = identify(problem, usable, generator, rules, progress)
+    found = identify(problem, usable, generator, rules, progress) if tested else described(problem)
     tell("where they disagree")
     bare = problem.cells(())
-    gap, p = gaps(problem, bare), gap_p(problem, bare, generator)
+    gap = gaps(problem, bare)
+    p = gap_p(problem, bare, generator) if tested else np.full(len(gap), np.nan)
     tell("held-out samples, designs and rates")
-    parts = held_out(problem, found.best)
+    parts = held_out(problem, found.best) if tested else ()
+    parts = tuple(part for part in parts if part.kind == "design" or not summary)
     after = gaps(problem, problem.cells(found.best.actives))
-    summary = isinstance(measured, Summary)
     explanation = Explanation(
         verdict=found.verdict,
         where=regions(problem, gap, p),
@@ -63,19 +70,33 @@ def explain(
         rivals=tuple(one.names for one in found.rivals) if found.verdict == "ambiguous" else (),
         gap=_gap(problem, gap, after, parts, summary),
         p_gap=found.p_gap,
-        false_naming=(rules or Rules()).first,
+        false_naming=(rules or Rules()).first if tested else np.nan,
         tried=_tried(problem, found),
         judged_not=refused,
         remainder=remainder_words(problem, found, after),
         held_out=parts,
-        curves=_curves(problem, gap, after, p),
+        curves=_curves(problem, gap, after, p, measured),
         warnings=warnings,
         base=base.source,
         source=measured.source,
-        simulated=not summary and measured.simulated,
-        samples=problem.samples,
+        simulated=isinstance(measured, Measured) and measured.simulated,
+        samples=_samples(problem) if summary else problem.samples,
     )
     return Explained(explanation, problem, found)
+
+
+def _cannot_show(effect: Effect, problem: Problem) -> str:
+    """Why these data cannot show the effect, in words; empty where they can."""
+    quantities = problem.features.quantities
+    if not set(effect.seen_in) & set(quantities):
+        return f"it does not show in {' and '.join(quantities)}"
+    return effect.cannot_show(problem.scene) or ("" if problem.scatter.freedom > 0 else NOT_JUDGED)
+
+
+def _samples(problem: Problem) -> int:
+    """Behind a table of means: of each design the most behind one mean."""
+    features = problem.features
+    return int(sum(features.count[features.sample == design].max() for design in range(len(features.sample_names))))
 
 
 def _effects(problem: Problem, found: Identified) -> tuple[Found, ...]:
@@ -124,6 +145,8 @@ def _gap(problem: Problem, gap: FloatArray, after: FloatArray, parts: tuple, sum
 
 
 def _tried(problem: Problem, found: Identified) -> tuple[Tried, ...]:
+    if not found.tried:
+        return ()
     bare = nothing(problem)
     rows = []
     for one in found.tried:
@@ -151,12 +174,19 @@ def _tried(problem: Problem, found: Identified) -> tuple[Tried, ...]:
     return tuple(rows)
 
 
-def _curves(problem: Problem, gap: FloatArray, after: FloatArray, p: FloatArray) -> Curves:
+def _curves(
+    problem: Problem, gap: FloatArray, after: FloatArray, p: FloatArray, measured: Measured | Summary
+) -> Curves:
     features, kinds = problem.features, problem.features.kinds
     rows = features.features
     number = np.bincount(features.feature, minlength=len(rows))
     mean = np.bincount(features.feature, features.value, minlength=len(rows)) / np.maximum(number, 1)
     squares = np.bincount(features.feature, (features.value - mean[features.feature]) ** 2, minlength=len(rows))
+    sd = np.where(number > 1, np.sqrt(squares / np.maximum(number - 1, 1)), np.nan)
+    if isinstance(measured, Summary):
+        own = {(d, float(p)): s for d, p, s in zip(measured.design, measured.pressure_MPa, measured.sd)}
+        sd = np.array([own[problem.scene.names[row.design], row.pressure_MPa] for row in rows])
+        number = features.count.astype(int)
     return Curves(
         design=np.array([problem.scene.names[row.design] for row in rows]),
         quantity=np.array([row.quantity for row in rows]),
@@ -169,7 +199,7 @@ def _curves(problem: Problem, gap: FloatArray, after: FloatArray, p: FloatArray)
         pressure_MPa=np.array([row.pressure_MPa for row in rows]),
         time_s=np.array([row.time_s for row in rows]),
         measured=mean,
-        sd=np.where(number > 1, np.sqrt(squares / np.maximum(number - 1, 1)), np.nan),
+        sd=sd,
         n=number.astype(float),
         simulated=mean - gap,
         explained=mean - after,

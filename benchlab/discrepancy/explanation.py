@@ -21,9 +21,11 @@ VERDICTS = {
 
 @dataclass(frozen=True)
 class Region:
-    """Where they disagree. direction: loading, unloading, hold, or all. rate_MPa_s, cycle: None where it is over all of them.
+    """Where they disagree. direction: loading, unloading, hold, or all. rate_MPa_s: None in a hold, and where it is not known; cycle: None
+    where it is over all of them.
 
-    gap: measured − simulated on average over the interval, in the unit of the quantity; p: simultaneous over all regions looked at.
+    gap: measured − simulated on average over the interval, in the unit of the quantity; p: simultaneous over all regions looked at, NaN
+    where it is not known how samples scatter.
     """
 
     design: str
@@ -63,8 +65,9 @@ class Found:
 class Gap:
     """Root mean square of measured − model, in the unit of the quantity, over the means of designs and features.
 
-    heldout: of samples that the fit did not see (each design's samples left out in turn). noise_floor: of a sample about its own design's
-    mean, as a model without fault would reach on a held-out sample. ceiling: share of the gap before that any model could explain.
+    heldout: of samples that the fit did not see (each design's samples left out in turn); of a table of means, of designs. noise_floor: of
+    a sample about its own design's mean, as a model without fault would reach on a held-out sample; of a table of means, their standard
+    error. ceiling: share of the gap before that any model could explain.
     """
 
     rmse_before: float
@@ -104,10 +107,11 @@ class Tried:
 
 @dataclass(frozen=True)
 class Curves:
-    """The features that were compared, (F,) each, for pictures and tables: a bin of pressure (or of time in a hold) of a kind of run of a design.
+    """The features that were compared, (F,) each, for pictures and tables: a bin of pressure (in a hold: of time) of a kind of run.
 
-    kind: words for the kind of run ("0.35 MPa at 0.12 MPa/s"). rate_MPa_s: NaN in a hold. measured: mean over samples; sd: between samples;
-    n: samples; simulated: base alone; explained: with the effects (= simulated where none); p: simultaneous, of measured ≠ simulated.
+    kind: words for the kind of run ("0.35 MPa at 0.12 MPa/s"). rate_MPa_s: NaN in a hold. measured: mean over samples; sd: between samples
+    (of a table of means: the table's own), NaN where it is not known; n: samples; simulated: base alone; explained: with the effects
+    (= simulated where none); p: simultaneous, of measured ≠ simulated, NaN where scatter is not known.
     """
 
     design: NDArray[np.str_]
@@ -142,7 +146,8 @@ class NextExperiment:
 
 @dataclass(frozen=True)
 class Explanation:
-    """All that was found. p_gap: of no disagreement at all. false_naming: expected rate of a name where nothing is missing, at this data size.
+    """All that was found. p_gap: of no disagreement at all. false_naming: nominal rate of a name where nothing is missing, to which the
+    rules are calibrated. samples: behind all means. Both probabilities are NaN where the data could only be described.
 
     judged_not: effects that these data cannot show, with the reason. remainder: what is left and what it depends on, in words.
     """
@@ -165,3 +170,8 @@ class Explanation:
     simulated: bool
     samples: int
     next_experiment: NextExperiment | None = None
+
+    @property
+    def only_described(self) -> bool:
+        """Whether nothing scatters in these data, so that nothing could be tested."""
+        return self.verdict == "unexplained" and bool(np.isnan(self.p_gap))

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from benchlab.discrepancy.against import Against, against_of
 from benchlab.discrepancy.base import Base
 from benchlab.discrepancy.kinds import Kind, kinds_of
 from benchlab.discrepancy.measured import Run
@@ -50,7 +51,8 @@ class Feature:
 @dataclass(frozen=True)
 class Features:
     """features: F of them, sorted. Cells, (C,) each, sorted by sample and feature: one feature of one sample. sample, feature: indices;
-    value: measured mean; count: of readings. of_point: quantity → (T, R) cell of each point, −1 for none. sample_design: (S,); kinds: of runs."""
+    value: measured mean; count: of readings. of_point: quantity → (T, R) cell of each point, −1 for none. sample_design: (S,); kinds: of runs.
+    against: further columns named by the user, (F,) each."""
 
     features: tuple[Feature, ...]
     kinds: tuple[Kind, ...]
@@ -61,6 +63,7 @@ class Features:
     value: FloatArray
     count: FloatArray
     of_point: dict[str, NDArray[np.int64]]
+    against: Against = field(default_factory=dict)
 
     @property
     def quantities(self) -> tuple[str, ...]:
@@ -97,7 +100,7 @@ class Features:
 class _Points:
     """The P points of one run, and the interval that each belongs to: cycle, direction, bin (P,), −1 for none; rates of the segments (P,).
 
-    values, counts: by quantity, (P,): mean of the readings, NaN without one, and their number.
+    values, counts: by quantity, (P,): mean of the readings, NaN without one, and their number. against: means of further columns.
     """
 
     time_s: FloatArray
@@ -110,6 +113,7 @@ class _Points:
     rate_MPa_s: FloatArray
     values: dict[str, FloatArray]
     counts: dict[str, FloatArray]
+    against: dict[str, FloatArray]
 
 
 def features_of(runs: Sequence[Run], base: Base, top_MPa: float | None = None) -> tuple[Features, Scene]:
@@ -120,7 +124,17 @@ def features_of(runs: Sequence[Run], base: Base, top_MPa: float | None = None) -
     kinds, kind_of, cuts = kinds_of(runs)
     gathered = [_points(run, cut, top) for run, cut in zip(runs, cuts)]
     scene = _scene(runs, gathered, names, samples, base)
-    return _features(runs, gathered, kinds, np.array([kind_of, _occurrences(runs, kind_of)]), names, samples), scene
+    features = _features(runs, gathered, kinds, np.array([kind_of, _occurrences(runs, kind_of)]), names, samples)
+    return replace(features, against=_against(runs, gathered, features)), scene
+
+
+def _against(runs: Sequence[Run], gathered: Sequence[_Points], features: Features) -> Against:
+    feature = np.append(features.feature, -1)  # the last one is for points without a cell
+    places = [
+        np.array([feature[of_point[: len(points.time_s), column]] for of_point in features.of_point.values()])
+        for column, points in enumerate(gathered)
+    ]
+    return against_of(runs, [points.against for points in gathered], places, len(features.features))
 
 
 def _occurrences(runs: Sequence[Run], kind_of: Sequence[int]) -> list[int]:
@@ -141,16 +155,18 @@ def _points(run: Run, cut: Sequence[Segment], top_MPa: float) -> _Points:
     starts, about = [0], [(1, DIRECTIONS.index("all"), 0, np.nan)]
     if cut:
         starts, about = [], []
+    turns = bool(cut) and cut[0].direction != "all"
     for segment in cut:
-        starts.append(segment.first)
-        about.append((-1, -1, -1, np.nan))
+        if turns:
+            starts.append(segment.first)
+            about.append((-1, -1, -1, np.nan))
         for place, (first, last, number) in enumerate(_intervals(run, segment, top_MPa)):
             wanted = min(POINTS_AFTER_A_TURN if place < 2 else POINTS, last - first)
             cycle = -1 if segment.direction == "rest" else min(segment.cycle, LAST_CYCLE)
             told = (cycle, DIRECTIONS.index(segment.direction), number, segment.rate_MPa_s)
             starts += [first + (last - first) * i // wanted for i in range(wanted)]
             about += [told] * wanted
-    if cut:
+    if turns:
         starts.append(cut[-1].last)
         about.append((-1, -1, -1, np.nan))
     end = cut[-1].last + 1 if cut else len(run.time_s)
@@ -177,12 +193,15 @@ def _points(run: Run, cut: Sequence[Segment], top_MPa: float) -> _Points:
         rate,
         {quantity: found[0] for quantity, found in means.items()},
         {quantity: found[1] for quantity, found in means.items()},
+        {name: mean(column)[0] for name, column in run.against.items() if not isinstance(column, str)},
     )
 
 
 def _intervals(run: Run, segment: Segment, top_MPa: float) -> list[tuple[int, int, int]]:
     """First reading, reading after the last, and number of each interval of a segment, in the order of time."""
     inside = np.arange(segment.first + 1, segment.last)
+    if segment.direction == "all":
+        inside = np.arange(segment.first, segment.last + 1)
     if len(inside) == 0:
         return []
     if segment.direction in ("hold", "rest"):
@@ -195,7 +214,9 @@ def _intervals(run: Run, segment: Segment, top_MPa: float) -> list[tuple[int, in
 
 
 def _level(run: Run, segment: Segment, inside: NDArray[np.int64], top_MPa: float) -> FloatArray:
-    """Pressure without its noise: the straight line where the segment is one, else the largest (smallest) so far."""
+    """Pressure without its noise: the straight line where the segment is one, else the largest (smallest) so far. Without a time as it is."""
+    if segment.direction == "all":
+        return run.pressure_MPa[inside]
     ends = [run.time_s[segment.first], run.time_s[segment.last]]
     straight = np.interp(run.time_s[inside], ends, [segment.start_MPa, segment.end_MPa])
     if float(np.max(np.abs(straight - run.pressure_MPa[inside]))) < 0.05 * top_MPa:

@@ -57,7 +57,8 @@ def _t(table: FloatArray, sd: FloatArray, known: np.ndarray) -> FloatArray:
 
 
 def regions(problem: Problem, gap: FloatArray, p: FloatArray) -> tuple[Region, ...]:
-    """Neighbouring intervals of significant gaps of one sign, of each design, kind of run, cycle and direction."""
+    """Neighbouring intervals of significant gaps of one sign, of each design, kind of run, cycle and direction; of any gap without a p."""
+    told = ~(p >= SIGNIFICANT)
     features = problem.features.features
     found = []
     order = sorted(range(len(features)), key=lambda i: (_curve(features[i]), features[i].bin))
@@ -66,7 +67,7 @@ def regions(problem: Problem, gap: FloatArray, p: FloatArray) -> tuple[Region, .
         for i in [*group, -1]:
             goes_on = (
                 i >= 0
-                and p[i] < SIGNIFICANT
+                and told[i]
                 and (
                     not stretch
                     or (
@@ -80,7 +81,7 @@ def regions(problem: Problem, gap: FloatArray, p: FloatArray) -> tuple[Region, .
                 continue
             if stretch:
                 found.append(_region(problem, stretch, gap, p))
-            stretch = [i] if i >= 0 and p[i] < SIGNIFICANT else []
+            stretch = [i] if i >= 0 and told[i] else []
     return tuple(found)
 
 
@@ -91,13 +92,12 @@ def _curve(feature: Feature) -> tuple[int, str, int, int, int, str]:
 def _region(problem: Problem, stretch: list[int], gap: FloatArray, p: FloatArray) -> Region:
     features = [problem.features.features[i] for i in stretch]
     first = features[0]
-    rate = problem.features.kinds[first.kind].rate_MPa_s if first.direction == "hold" else first.rate_MPa_s
     pressures = [feature.pressure_MPa for feature in features]
     return Region(
         design=problem.scene.names[first.design],
         quantity=first.quantity,
         direction=first.direction,
-        rate_MPa_s=float(rate) if np.isfinite(rate) else None,
+        rate_MPa_s=first.rate_MPa_s if np.isfinite(first.rate_MPa_s) else None,
         cycle=first.cycle,
         pressure_MPa=(float(min(pressures)), float(max(pressures))),
         gap=float(np.mean(gap[stretch])),

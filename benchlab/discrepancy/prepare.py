@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import groupby
 
 import numpy as np
 
 from benchlab.discrepancy.base import Base, DesignBase
+from benchlab.discrepancy.describe import TOLD, scatters, unknown_scatter
 from benchlab.discrepancy.features import Feature, Features, features_of
 from benchlab.discrepancy.kinds import Kind
 from benchlab.discrepancy.measured import Measured, Run, Summary
@@ -28,7 +30,8 @@ FEWEST_READINGS = 20
 
 
 def prepared(measured: Measured | Summary, base: Base) -> tuple[Problem, tuple[str, ...]]:
-    """The problem, and what a user must know about it. Raises InputError where the data cannot carry a verdict."""
+    """The problem, and what a user must know about it. Where nothing scatters its scatter has no degree of freedom: the gap can only be
+    described. Raises InputError where nothing can be compared."""
     return _of_summary(measured, base) if isinstance(measured, Summary) else _of_runs(measured, base)
 
 
@@ -44,6 +47,8 @@ def _of_runs(measured: Measured, base: Base) -> tuple[Problem, tuple[str, ...]]:
         warnings.append(
             "flex_V is compared after a straight line through each sample's own readings: its gain and zero are not judged"
         )
+    if not scatters(features):
+        return Problem(scene, features, unknown_scatter(features), base.error), tuple(warnings)
     scatter = scatter_of(features)
     lone = [scene.names[d] for d, n in Counter(features.sample_design.tolist()).items() if n < 2]
     if lone:
@@ -60,8 +65,13 @@ def _comparable(measured: Measured, base: Base, warnings: list[str]) -> list[Run
             where=measured.source,
             hint="give the designs the same names, or their dimensions with --designs",
         )
-    for name in absent:
-        warnings.append(f"{name} is measured but not simulated{_reason(base, name)}: left out")
+    for reason, group in groupby(
+        sorted(absent, key=lambda name: _reason(base, name)), lambda name: _reason(base, name)
+    ):
+        names = tuple(group)
+        warnings.append(
+            f"{_some(names)} {'is' if len(names) == 1 else 'are'} measured but not simulated{reason}: left out"
+        )
     kept, beyond, readings = [], 0, 0
     for run in measured.runs:
         if run.design in absent:
@@ -105,28 +115,25 @@ def _cut(run: Run, values: Mapping[str, FloatArray], inside: np.ndarray) -> Run:
 
     return replace(
         run,
-        time_s=run.time_s[inside],
+        time_s=np.nan_to_num(run.time_s[inside]),
         pressure_MPa=run.pressure_MPa[inside],
         values={name: column[inside] for name, column in values.items()},
         command_MPa=part(run.command_MPa),
         temperature_C=part(run.temperature_C),
         cycle=part(run.cycle),
         sd={},
-        against={},
+        against={n: v if isinstance(v, str) else v[inside] for n, v in run.against.items()},
     )
 
 
 def _units(runs: list[Run]) -> tuple[list[Run], list[str]]:
-    """What scatters independently: samples; or, where each design has one, its runs."""
+    """What scatters independently: samples; or, where each design has one, its runs; or nothing, which is told."""
     samples = {(run.design, run.sample) for run in runs}
     if any(n > 1 for n in Counter(design for design, _ in samples).values()):
         return runs, []
     per_design = Counter(run.design for run in runs)
     if max(per_design.values()) < 3:
-        raise InputError(
-            "one sample of each design, and fewer than three runs of it: what scatters cannot be told from what is missing",
-            hint="measure two samples or more of one design at least, or three runs of the one",
-        )
+        return runs, [TOLD]
     told = "one sample of each design: its runs are taken for samples, so that the verdict is about these actuators, not about their designs"
     return [replace(run, sample=f"{run.sample} {run.run}", run_index=None) for run in runs], [told]
 

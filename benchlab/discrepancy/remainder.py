@@ -1,4 +1,4 @@
-"""What is left beside the model, and what it depends on, in words."""
+"""What is left beside the model, or what is not explained of the gap, and what it depends on, in words."""
 
 from __future__ import annotations
 
@@ -9,23 +9,23 @@ from benchlab.discrepancy.problem import Problem
 from benchlab.units import FloatArray
 
 STANDS_OUT = 0.1
-"""Share of the remainder's variance from which a dependence is told."""
+"""Share of the remainder's mean square from which a dependence is told."""
+
+AGAINST = "the column "
+"""Before the name of a further column."""
+
+LEVELS = ("the lowest", "low", "middle", "high", "the highest")
+"""Fifths of the features by a number."""
 
 
 def remainder_words(problem: Problem, found: Identified, left: FloatArray) -> tuple[str, ...]:
-    """What the remainder (F,) depends on, where there is one; empty where nothing but scatter is left."""
+    """What the remainder (F,) depends on, where there is one; empty where nothing but scatter is left.
+
+    Where it is not known how samples scatter (p is NaN), what the whole gap depends on.
+    """
     if found.p_left > 0.05 or len(left) < 8:
         return ()
-    features = problem.features.features
-    pressure = np.array([feature.pressure_MPa for feature in features])
-    labels = {
-        "the design": np.array([feature.design for feature in features]),
-        "the kind of run": np.array([feature.kind for feature in features]),
-        "the direction": np.array([feature.direction for feature in features]),
-        "the cycle": np.array([feature.cycle for feature in features]),
-        "the place of the run on its sample": np.array([feature.occurrence for feature in features]),
-        "pressure": np.digitize(pressure, np.quantile(pressure, [0.2, 0.4, 0.6, 0.8])),
-    }
+    labels = _labels(problem)
     rms = float(np.sqrt(np.mean(left**2)))
     shares = {name: _between(left, values) for name, values in labels.items()}
     words = [
@@ -33,10 +33,50 @@ def remainder_words(problem: Problem, found: Identified, left: FloatArray) -> tu
         for name, share in sorted(shares.items(), key=lambda item: -item[1])
         if share > STANDS_OUT
     ]
+    everywhere = _everywhere(left) if len(problem.features.quantities) == 1 else []
+    known = np.isfinite(found.p_left)
+    more = f"{rms:.2g} RMS is left, more than scatter (p = {found.p_left:.2g})"
     return (
-        f"{rms:.2g} RMS is left, more than scatter (p = {found.p_left:.2g})",
-        *(words or ["it depends on nothing simple"]),
+        more if known else f"{rms:.2g} RMS is the gap; how much of it is scatter is not known",
+        *(everywhere + words or ["it depends on nothing simple"]),
     )
+
+
+def _everywhere(left: FloatArray) -> list[str]:
+    """What all features have in common."""
+    mean = float(np.mean(left))
+    share = mean**2 / max(float(np.mean(left**2)), 1e-300)
+    return [f"{share:.0%} of it is the same everywhere: {mean:+.2g}"] if share > STANDS_OUT else []
+
+
+def _labels(problem: Problem) -> dict[str, np.ndarray]:
+    """Groups of the features (F,) by all that is known of them, also by further columns."""
+    features = problem.features.features
+    pressure = np.array([feature.pressure_MPa for feature in features])
+    own = {
+        "the design": np.array([feature.design for feature in features]),
+        "the kind of run": np.array([feature.kind for feature in features]),
+        "the direction": np.array([feature.direction for feature in features]),
+        "the cycle": np.array([feature.cycle for feature in features]),
+        "the place of the run on its sample": np.array([feature.occurrence for feature in features]),
+        "pressure": _fifths(pressure),
+    }
+    return own | {f"{AGAINST}{name}": _grouped(values) for name, values in problem.features.against.items()}
+
+
+def _fifths(values: FloatArray) -> np.ndarray:
+    return np.digitize(values, np.quantile(values, [0.2, 0.4, 0.6, 0.8]))
+
+
+def _grouped(values: np.ndarray) -> np.ndarray:
+    """A further column as words: its own, its few numbers, or fifths of its many; empty where it says nothing."""
+    if values.dtype.kind == "U":
+        return values
+    out = np.full(len(values), "", dtype=object)
+    known = np.isfinite(values)
+    few = len(np.unique(values[known])) <= len(LEVELS)
+    out[known] = [f"{v:g}" for v in values[known]] if few else [f"{LEVELS[i]} values" for i in _fifths(values[known])]
+    return out.astype(str)
 
 
 def _between(values: FloatArray, labels: np.ndarray) -> float:
@@ -62,7 +102,7 @@ def _word(problem: Problem, name: str, value: object) -> str:
     if name == "the kind of run":
         return f"runs {problem.features.kinds[int(value)].words}"  # type: ignore[call-overload]
     if name == "pressure":
-        return ("the lowest", "low", "middle", "high", "the highest")[int(value)] + " pressures"  # type: ignore[call-overload]
+        return LEVELS[int(value)] + " pressures"  # type: ignore[call-overload]
     if name == "the place of the run on its sample":
         return f"run {int(value) + 1}"  # type: ignore[call-overload]
-    return f"cycle {value}" if name == "the cycle" else str(value)
+    return f"cycle {value}" if name == "the cycle" else str(value) or "features without it"

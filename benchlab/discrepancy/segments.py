@@ -23,7 +23,7 @@ MOST_PIECES = 200
 
 @dataclass(frozen=True)
 class Segment:
-    """Points first to last (inclusive) of a run. direction: loading, unloading, hold or rest (a hold without pressure).
+    """Points first to last (inclusive) of a run. direction: loading, unloading, hold or rest (a hold without pressure); all without a time.
 
     cycle: from 1, grows with each loading from rest or after an unloading. rate_MPa_s: mean, NaN in a hold. low, high: MPa.
     """
@@ -39,7 +39,7 @@ class Segment:
 
 
 def segments_of(time_s: FloatArray, pressure_MPa: FloatArray) -> list[Segment]:
-    """The segments of a run, in order. time_s, pressure_MPa: (N,), finite, time growing.
+    """The segments of a run, in order. time_s, pressure_MPa: (N,), finite, time growing; or all the same: then there is one segment.
 
     >>> t = np.linspace(0, 30, 301)
     >>> [s.direction for s in segments_of(t, np.interp(t, [0, 10, 20, 30], [0, 0.3, 0.3, 0]))]
@@ -48,6 +48,9 @@ def segments_of(time_s: FloatArray, pressure_MPa: FloatArray) -> list[Segment]:
     span = float(np.ptp(pressure_MPa))
     if len(time_s) < 2 or span == 0:
         return []
+    if not np.ptp(time_s) > 0:
+        ends = float(pressure_MPa[0]), float(pressure_MPa[-1])
+        return [Segment(0, len(time_s) - 1, "all", 1, np.nan, *ends, 0.0)]
     noise = _noise(pressure_MPa)
     corners = _corners(time_s, pressure_MPa, max(TOLERANCE * span, 4 * noise))
     pieces = [(a, b, _direction(time_s, pressure_MPa, a, b, span)) for a, b in zip(corners[:-1], corners[1:])]

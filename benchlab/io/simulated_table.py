@@ -1,6 +1,6 @@
 """Simulated curves from any engine, as a table with a row a design and pressure.
 
-    design, pressure_MPa, angle_deg, and volume_mL, blocked_force_N where there are; other units by their names, as of measurements
+    design, pressure_MPa, angle_deg or blocked_force_N or both, and volume_mL where it is; other units by their names, as of measurements
 
 Designs are known by their names (`tw3_slw10`) or by columns tw_mm, slw_mm, which stand in for `design` too. The tables of
 `benchlab simulate` and `benchlab sweep`, and the published one, are such tables.
@@ -40,7 +40,7 @@ def read_simulated(
     """The curves of each design. columns: as of `read_measured`. told: takes what was assumed or left out.
 
     A table that begins above 0 MPa gets an angle and a force of 0 there, which is told. One pressure alone is taken as it is.
-    Raises UsageError or InputError, with the line, for a pressure of a design that stands twice, a negative one, or no angle at all.
+    Raises UsageError or InputError, with the line, for a pressure of a design that stands twice, a negative one, or no angle and no force.
     """
     told = [] if told is None else told
     cells = read_cells(path, lambda header: find_columns(header, str(path), columns, (), SAYS_NOTHING))
@@ -51,7 +51,7 @@ def read_simulated(
     told += rows.warnings
     shapes = shapes_in(cells, str(path), told) if set(WANTED) <= set(cells.columns.read) else {}
     shapes = {**designs_of_names(map(str, rows.frame["design"].cat.categories)), **shapes}
-    rows = _with_angle(rows, told)
+    rows = _with_curve(rows, told)
     parts = rows.frame.groupby("design", observed=True, sort=True)
     found = {str(name): _design(rows, part, str(name), shapes.get(str(name)), told) for name, part in parts}
     _tell_single(found, told)
@@ -60,26 +60,27 @@ def read_simulated(
 
 def _settle_force(rows: Rows) -> None:
     """The blocked force by its name among the curves."""
-    if "angle_deg" not in rows.frame:
-        hint = "name it angle_deg (or rad), or say --columns angle_deg=NAME"
-        raise InputError("no column of the angle", file=rows.source, hint=hint)
     if {"force_N", "blocked_force_N"} <= set(rows.frame):
         raise InputError(
             "two columns of the blocked force", file=rows.source, hint="keep one of force and blocked_force"
         )
     if "blocked_force_N" in rows.frame:
         rows.frame["force_N"] = rows.frame.pop("blocked_force_N")
+    if not {"angle_deg", "force_N"} & set(rows.frame):
+        hint = "name it angle_deg (or rad) or blocked_force_N, or say --columns angle_deg=NAME"
+        raise InputError("no column of the angle, nor of the blocked force", file=rows.source, hint=hint)
 
 
-def _with_angle(rows: Rows, told: list[str]) -> Rows:
-    """The rows that have a pressure and an angle."""
-    known = np.isfinite(rows.frame["pressure_MPa"].to_numpy()) & np.isfinite(rows.frame["angle_deg"].to_numpy())
+def _with_curve(rows: Rows, told: list[str]) -> Rows:
+    """The rows that have a pressure and an angle; where there is no column of the angle, a force."""
+    wanted, word = ("angle_deg", "an angle") if "angle_deg" in rows.frame else ("force_N", "a force")
+    known = np.isfinite(rows.frame["pressure_MPa"].to_numpy()) & np.isfinite(rows.frame[wanted].to_numpy())
     if not known.any():
-        raise InputError("no row with a pressure and an angle", file=rows.source, hint="are the columns empty?")
+        raise InputError(f"no row with a pressure and {word}", file=rows.source, hint="are the columns empty?")
     if not known.all():
         line = rows.frame.index[~known][0]
         told.append(
-            f"{counted(int((~known).sum()), 'row')} without pressure or angle left out, the first in line {line}"
+            f"{counted(int((~known).sum()), 'row')} without pressure or {word.split()[1]} left out, the first in line {line}"
         )
     frame = rows.frame[known]
     if (frame["pressure_MPa"] < 0).any():

@@ -21,7 +21,7 @@ def answer_of(explanation: Explanation, model: str | None = None) -> dict[str, A
         "model": model,
         "warnings": list(explanation.warnings),
         "p_gap": explanation.p_gap,
-        "false_naming": explanation.false_naming,
+        "false_naming_nominal": explanation.false_naming,
         "remainder": list(explanation.remainder),
         "not_judged": dict(explanation.judged_not),
         "held_out": [asdict(part) for part in explanation.held_out],

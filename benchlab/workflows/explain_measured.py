@@ -55,7 +55,13 @@ def next_experiment(found: Explained, limits: BenchLimits) -> NextExperiment | N
         why = (
             "what depends on rate, direction, time and cycle from what does not, so that the remainder can be described"
         )
-        return default_proposal(limits, why).told
+        told = default_proposal(limits, why).told
+        more = "two samples of each design, or three runs of the one, so that it is known what scatters"
+        return (
+            replace(told, setup="; ".join(filter(None, [more, told.setup])))
+            if found.explanation.only_described
+            else told
+        )
     quantity = main_quantity(found)
     sizes = problem.scatter.components.get(quantity, {})
     if not sizes or not all(math.isfinite(size) for size in sizes.values()):

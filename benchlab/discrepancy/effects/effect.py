@@ -6,12 +6,21 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
+from benchlab.discrepancy.base import KNOBS
 from benchlab.discrepancy.scene import Scene
 from benchlab.units import FloatArray
 
 UNKNOWN_DESIGN = "the designs' dimensions are not known, so the base cannot tell how this piece of the structure acts"
 UNKNOWN_LENGTH = "the actuators' length is not known"
 """Why effects that need a design cannot be shown."""
+
+
+def without_knob(scene: Scene, knob: str) -> str:
+    """Why an effect that turns a structural knob cannot be shown; empty where the base knows how its curves change with it."""
+    if scene.has_knob(knob):
+        return ""
+    shapes = [scene.base.designs[name].shape for name in scene.names]
+    return UNKNOWN_DESIGN if None in shapes else f"the simulation has no sensitivity to {knob} ({KNOBS[knob][1]})"
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar
 
-from benchlab.discrepancy.effects.effect import UNKNOWN_DESIGN, At, Effect, Parameter
+from benchlab.discrepancy.effects.effect import At, Effect, Parameter, without_knob
 from benchlab.discrepancy.scene import Scene
 from benchlab.units import FloatArray
 
@@ -34,7 +34,7 @@ class FabricCompliance(Effect):
     )
 
     def cannot_show(self, scene: Scene) -> str:
-        return "" if scene.has_knob("fabric_modulus") else UNKNOWN_DESIGN
+        return without_knob(scene, "fabric_modulus")
 
     def knobs(self, at: At) -> Mapping[str, FloatArray | float]:
         return {"fabric_modulus": at.values["factor"]}

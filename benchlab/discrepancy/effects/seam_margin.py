@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar
 
-from benchlab.discrepancy.effects.effect import UNKNOWN_DESIGN, At, Effect, Parameter
+from benchlab.discrepancy.effects.effect import At, Effect, Parameter, without_knob
 from benchlab.discrepancy.scene import Scene
 from benchlab.units import FloatArray
 
@@ -34,7 +34,7 @@ class SeamMargin(Effect):
     )
 
     def cannot_show(self, scene: Scene) -> str:
-        return "" if scene.has_knob("seam_margin_mm") else UNKNOWN_DESIGN
+        return without_knob(scene, "seam_margin_mm")
 
     def knobs(self, at: At) -> Mapping[str, FloatArray | float]:
         return {"seam_margin_mm": at.values["margin_mm"]}

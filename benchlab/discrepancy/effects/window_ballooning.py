@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar
 
-from benchlab.discrepancy.effects.effect import UNKNOWN_DESIGN, At, Effect, Parameter
+from benchlab.discrepancy.effects.effect import At, Effect, Parameter, without_knob
 from benchlab.discrepancy.scene import Scene
 from benchlab.units import FloatArray
 
@@ -34,9 +34,11 @@ class WindowBallooning(Effect):
     )
 
     def cannot_show(self, scene: Scene) -> str:
+        if scene.base.kind == "cell":
+            return "the shell cell has it"
         if scene.base.kind != "beam":
-            return "only a beam model lacks it; the shell cell has it"
-        return "" if scene.has_knob("ballooning") else UNKNOWN_DESIGN
+            return "whether another engine's curves have it is not known"
+        return without_knob(scene, "ballooning")
 
     def knobs(self, at: At) -> Mapping[str, FloatArray | float]:
         return {"ballooning": at.values["share"]}

@@ -27,6 +27,7 @@ from benchlab.report.explain.tables import (
 from benchlab.report.explain.words import (
     SIMULATED,
     false_naming_words,
+    floor_words,
     next_lines,
     percent,
     set_words,
@@ -114,7 +115,9 @@ def _tiles(explanation: Explanation) -> Iterator[Tile]:
     else:
         yield Tile(quantity.amount(before), f"gap, root mean square, {where}", quantity.noun)
     if math.isfinite(gap.noise_floor):
-        yield Tile(quantity.amount(gap.noise_floor), "noise floor", "a sample about the mean of its design")
+        means = unseen(explanation) == "designs"
+        what = "of the means" if means else "a sample about the mean of its design"
+        yield Tile(quantity.amount(gap.noise_floor), floor_words(explanation)[0], what)
     if explanation.effects:
         share = sum(found.share_explained for found in explanation.effects)
         ceiling = f"; any model: at most {percent(gap.ceiling)}" if math.isfinite(gap.ceiling) else ""
@@ -127,7 +130,11 @@ def _tiles(explanation: Explanation) -> Iterator[Tile]:
 
 def _where(explanation: Explanation) -> Iterator[Block]:
     sentences = told_regions(explanation.where, explanation.curves, most=12)
-    if not sentences:
+    if explanation.only_described:
+        yield Words(
+            "Stretches of pressure with a gap of one sign. How samples scatter is not known, so that none has a p."
+        )
+    elif not sentences:
         yield Words("Nowhere do measured and simulated differ by more than the scatter of the samples explains.")
     for sentence in sentences:
         yield Words(f"{sentence[:1].upper() if sentence.startswith('all ') else sentence[:1]}{sentence[1:]}.")

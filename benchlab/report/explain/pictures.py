@@ -55,9 +55,8 @@ def map_pictures(explanation: Explanation, model: Model = "simulated") -> Pictur
         panels.append(_panel(explanation, figure, name, title))
     caption = "Red: measured is more; blue: less; colours end at the largest gap of the simulation, or two standard deviations of a sample."
     if before:
-        caption = (
-            f"Where measured and simulated differ. {caption} Dots: p < {ALPHA:g} for all places looked at together."
-        )
+        dots = "" if explanation.only_described else f" Dots: p < {ALPHA:g} for all places looked at together."
+        caption = f"Where measured and simulated differ. {caption}{dots}"
     else:
         caption = f"What is left {names_of(explanation)[1]}, in the colours of the first figure. {caption}"
     left_off = f" The designs with the largest gaps are drawn; {hidden} others are in curves.csv." if hidden else ""

@@ -64,6 +64,7 @@ def told_regions(regions: Sequence[Region], curves: Curves, most: int = 6) -> li
     """Sentences, the largest gap first, and how many more there are.
 
     Told in the unit of the quantity; the number is the gap averaged over the interval, of merged regions from the smallest to the largest.
+    A p that is not known is not told.
     """
     found = merged(regions, curves)
     left = len(found) - most
@@ -77,7 +78,8 @@ def told(one: Stretch, curves: Curves) -> str:
     subject = subject_words(one.designs, sorted(set(curves.design[curves.quantity == one.quantity].tolist())))
     head = quantity.differs(subject, quantity.span(low, high), one.gap[1] <= 0, len(one.designs) > 1)
     place = f"{head} {pressure_words(one.pressure_MPa)}"
-    return f"{', '.join(filter(None, (place, *_circumstances(one, curves))))}; p {_p(one.p, one.gap[0] != one.gap[1])}"
+    probability = "" if np.isnan(one.p) else f"; p {_p(one.p, one.gap[0] != one.gap[1])}"
+    return f"{', '.join(filter(None, (place, *_circumstances(one, curves))))}{probability}"
 
 
 def subject_words(designs: Sequence[str], all_designs: Sequence[str]) -> str:

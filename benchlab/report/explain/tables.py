@@ -28,11 +28,16 @@ def regions_table(explanation: Explanation) -> Table:
         (
             words(one.design, 40), words(one.quantity, 30), words(one.direction, 20), digits(one.rate_MPa_s, 2), count(one.cycle),
             digits(one.pressure_MPa[0]), digits(one.pressure_MPa[1]), Cell(None, pressure_words(one.pressure_MPa)),
-            Cell(one.gap, quantity_of(explanation.curves, one.quantity).amount(one.gap, signed=True)), probability(one.p, P_FLOOR),
+            Cell(one.gap, quantity_of(explanation.curves, one.quantity).amount(one.gap, signed=True)), probability(_finite(one.p), P_FLOOR),
         )
         for one in explanation.where
     )  # fmt: skip
-    note = "The gap is averaged over the interval. p holds for all regions looked at together. An empty cell: over all of them."
+    holds = (
+        "No p, because it is not known how samples scatter."
+        if explanation.only_described
+        else "p holds for all regions looked at together."
+    )
+    note = f"The gap is averaged over the interval. {holds} An empty cell: over all of them; without a rate: held, or without a time."
     return Table("regions", "Where measured and simulated differ.", columns, rows, note, by="design", most=15)
 
 

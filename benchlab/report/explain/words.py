@@ -62,6 +62,8 @@ def verdict_title(explanation: Explanation) -> str:
         return f"missing: {set_words([found.name for found in explanation.effects])}"
     if explanation.verdict == "ambiguous":
         return f"{len(explanation.rivals)} explanations are left"
+    if explanation.only_described:
+        return "a gap, described only"
     return "a gap that no known effect explains"
 
 
@@ -90,6 +92,11 @@ def _ambiguous(explanation: Explanation, quantity: Quantity, gap: Gap) -> str:
 
 
 def _unexplained(explanation: Explanation, quantity: Quantity, gap: Gap) -> str:
+    if explanation.only_described:
+        return (
+            f"Measured and simulated {quantity.noun} differ by {quantity.amount(gap.rmse_before)} (root mean square). Whether that is more "
+            "than samples scatter, and what is missing, these data cannot tell; where and how they differ is described."
+        )
     text = f"{_disagree(explanation, quantity, gap)}, and no effect of the vocabulary explains it"
     if explanation.effects:
         names = set_words([found.name for found in explanation.effects])
@@ -110,6 +117,13 @@ def unseen(explanation: Explanation) -> str:
     return "designs" if "design" in kinds and "sample" not in kinds else "samples"
 
 
+def floor_words(explanation: Explanation) -> tuple[str, str]:
+    """What the noise floor is called, and what it is: of a table of means, their standard error."""
+    if unseen(explanation) == "designs":
+        return "standard error", "of the means, which a faultless model misses by as much"
+    return "noise floor", "as near as a faultless model comes to a held-out sample"
+
+
 def _shrinks(explanation: Explanation, quantity: Quantity) -> str:
     """How the gap falls: on held-out data where there are any."""
     gap = explanation.gap
@@ -124,7 +138,9 @@ def _shrinks(explanation: Explanation, quantity: Quantity) -> str:
     verb = "falls" if after < before else "does not fall: it goes"
     text = f"the gap {verb} from {quantity.amount(before)} to {quantity.amount(after)} {where}"
     if math.isfinite(gap.noise_floor):
-        text += f"; {quantity.amount(gap.noise_floor)} is what samples of one design scatter by"
+        means = unseen(explanation) == "designs"
+        what = "the standard error of the means" if means else "what samples of one design scatter by"
+        text += f"; {quantity.amount(gap.noise_floor)} is {what}"
     return text
 
 
@@ -184,11 +200,15 @@ def parameter_text(estimate: Estimate) -> tuple[str, str]:
 def gap_lines(explanation: Explanation) -> Iterator[str]:
     """Before and after, on the data of the fit and on held-out samples, and between which limits that has to be read."""
     quantity, gap = main_quantity(explanation.curves), explanation.gap
+    if explanation.only_described:
+        yield f"{quantity.amount(gap.rmse_before)} (root mean square of measured − simulated)"
+        return
     yield f"on the data of the fit {_change(quantity, gap.rmse_before, gap.rmse_after)} (root mean square of measured − model)"
     if math.isfinite(gap.heldout_before) and math.isfinite(gap.heldout_after):
         yield f"on held-out {unseen(explanation)} {_change(quantity, gap.heldout_before, gap.heldout_after)}"
     if math.isfinite(gap.noise_floor):
-        yield f"noise floor {quantity.amount(gap.noise_floor)}: as near as a faultless model comes to a held-out sample"
+        name, what = floor_words(explanation)
+        yield f"{name} {quantity.amount(gap.noise_floor)}: {what}"
     if math.isfinite(gap.ceiling):
         yield f"ceiling {percent(gap.ceiling)}: the share of the gap that any model could explain"
     if math.isfinite(explanation.false_naming):
@@ -196,8 +216,9 @@ def gap_lines(explanation: Explanation) -> Iterator[str]:
 
 
 def false_naming_words(explanation: Explanation) -> str:
+    rate = percent(explanation.false_naming)
     return (
-        f"where nothing is missing, {percent(explanation.false_naming)} of studies like this one would be given a name"
+        f"nominal rate of false names {rate}: of studies in which nothing is missing, to which the rules are calibrated"
     )
 
 

@@ -65,6 +65,16 @@ def test_states_that_were_not_found_are_left_out(tmp_path: Path) -> None:
     assert told == ["1 row without pressure or angle left out, the first in line 4"]
 
 
+def test_forces_alone(tmp_path: Path) -> None:
+    told: list[str] = []
+    base = read_simulated(
+        write(tmp_path, "design,pressure_kPa,blocked_force_N\na,100,2\na,200,5\na,300,\n"), told=told
+    )["a"]
+    assert base.pressure_MPa.tolist() == [0, 0.1, 0.2] and base.curves.keys() == {"force_N"}
+    assert base.curves["force_N"].tolist() == [0, 2, 5]
+    assert told[0] == "1 row without pressure or force left out, the first in line 4"
+
+
 def test_columns_of_other_names(tmp_path: Path) -> None:
     path = write(tmp_path, "Configuration,Pressure,Theta6\na,0,1\na,100,2\n")
     base = read_simulated(path, {"design": "Configuration", "pressure_kPa": "Pressure", "angle_deg": "Theta6"})["a"]
@@ -91,7 +101,7 @@ def test_what_is_refused(tmp_path: Path, rows: str, words: str, where: str | Non
     "header, words",
     [
         ("design,pressure_MPa,angle", "no unit in the name of column 'angle'"),
-        ("design,pressure_MPa,force_N", "no column of the angle"),
+        ("design,pressure_MPa,volume_mL", "no column of the angle, nor of the blocked force"),
         ("design,volume_mL,angle_deg", "no column of pressure"),
     ],
 )
