@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +17,10 @@ STEPS = 12
 
 @dataclass(frozen=True)
 class Fit:
-    """Effects with their fitted numbers. model, residual: (C,) whitened; tangent: (C, q) derivatives by the parameters, scaled; misfit: |residual|²."""
+    """Effects with their fitted numbers. model, residual: (C,), whitened; misfit: |residual|², which is −2 log L but for a constant.
+
+    tangent: (C, q), derivatives of the model by the parameters, each in units of scale_of.
+    """
 
     actives: tuple[Active, ...]
     model: FloatArray
@@ -37,7 +40,9 @@ def nothing(problem: Problem) -> Fit:
 
 
 def fit(problem: Problem, actives: Sequence[Active], steps: int = STEPS) -> Fit:
-    """Levenberg–Marquardt from the values of the actives, clipped to their bounds."""
+    """Levenberg–Marquardt from the values of the actives, within their bounds: a step is cut at a bound, and a parameter that would leave
+    at one is held there. Ends after `steps`, or where a step gains less than 0.001 of misfit.
+    """
     parameters = [parameter for active in actives for parameter in active.effect.parameters]
     low, high = np.array([p.low for p in parameters]), np.array([p.high for p in parameters])
     scale = np.array([scale_of(p) for p in parameters])
@@ -52,7 +57,7 @@ def fit(problem: Problem, actives: Sequence[Active], steps: int = STEPS) -> Fit:
     tangent = np.zeros((len(residual), len(x)))
     fresh = False
     for _ in range(steps):
-        tangent = _tangent(at, x, model, scale, low, high)
+        tangent = _tangent(at, x, model, scale, high)
         fresh = True
         hessian, gradient = tangent.T @ tangent, tangent.T @ residual
         better = False
@@ -77,7 +82,7 @@ def fit(problem: Problem, actives: Sequence[Active], steps: int = STEPS) -> Fit:
         if not better:
             break
     if not fresh:
-        tangent = _tangent(at, x, model, scale, low, high)
+        tangent = _tangent(at, x, model, scale, high)
     return Fit(placed(actives, x), model, residual, tangent, misfit)
 
 
@@ -93,12 +98,15 @@ def placed(actives: Sequence[Active], x: FloatArray) -> tuple[Active, ...]:
 
 
 def scale_of(parameter: Parameter) -> float:
-    """A natural step of a parameter."""
+    """A natural step of a parameter: the smallest distance of its typical and starting values from its neutral one (or 0)."""
     distances = [abs(s - (parameter.neutral or 0.0)) for s in (*parameter.starts, parameter.typical)]
     return max(min((d for d in distances if d > 0), default=1.0), 1e-12)
 
 
-def _tangent(at, x: FloatArray, model: FloatArray, scale: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:  # type: ignore[no-untyped-def]
+def _tangent(
+    at: Callable[[FloatArray], FloatArray], x: FloatArray, model: FloatArray, scale: FloatArray, high: FloatArray
+) -> FloatArray:
+    """(C, q): one-sided differences over a fiftieth of the scale, backwards at the upper bound."""
     columns = []
     for i in range(len(x)):
         step = 0.02 * scale[i]

@@ -15,10 +15,14 @@ from benchlab.units import FloatArray
 
 FOLDS = 5
 STEPS = 4
+"""Of a refit, which begins at the fit to all."""
 
 
 def held_out(problem: Problem, best: Fit) -> tuple[HeldOut, ...]:
-    """Samples (in FOLDS folds, a part of each design's at a time), designs and kinds of runs, each left out, refitted without and predicted."""
+    """Samples (in FOLDS folds, a part of each design's at a time), designs and kinds of runs: each left out, refitted without, predicted.
+
+    after is NaN where a part cannot be left out, as nothing else is there.
+    """
     return tuple(_one(problem, best, *fold) for fold in _folds(problem))
 
 
@@ -55,7 +59,10 @@ def _rmse(problem: Problem, cells: FloatArray, where: NDArray[np.bool_]) -> floa
 
 
 def noise_floor(problem: Problem, where: NDArray[np.bool_] | None = None) -> float:
-    """RMS of a sample about the mean of its design, without the bias of the mean: what a model without fault would reach on a new sample."""
+    """RMS of samples about the mean of their design, each feature's variance with n − 1: what a faultless model reaches on a new sample.
+
+    where: (C,), cells that count; NaN where no feature has two samples.
+    """
     features = problem.features
     number = np.bincount(features.feature, minlength=len(features.features))
     means = np.bincount(features.feature, features.value, minlength=len(number)) / np.maximum(number, 1)

@@ -14,15 +14,18 @@ LEVEL = 0.95
 
 
 def covariance(problem: Problem, fit: Fit) -> FloatArray:
-    """(q, q): of the parameters, in their units: H⁻¹ M H⁻¹ with the scores' scatter between samples M, moderated by the fitted scatter H
-    (sandwich estimate; White 1982, samples as clusters)."""
+    """(q, q): of the parameters, in their units: H⁻¹ M H⁻¹, H = JᵀJ of the tangent J (sandwich estimate; White 1982, samples as clusters).
+
+    M: covariance of the scores, mean of that by the fitted scatter, which counts for PRIOR_FREEDOM, and of the scores' own scatter about
+    the mean of their design, which counts for its degrees of freedom; and the systematic error's share.
+    """
     tangent = fit.tangent
     hessian = tangent.T @ tangent
     scores = problem.per_sample(tangent * fit.residual[:, None])
     design = problem.features.sample_design
     n = np.bincount(design)[design]
     several = n > 1
-    deviation = problem._within @ scores
+    deviation = problem.within_design @ scores
     weighted = deviation * np.sqrt(np.where(several, n / np.maximum(n - 1, 1), 0.0))[:, None]
     freedom = problem.scatter.freedom
     own = weighted.T @ weighted * (problem.samples / max(int(several.sum()), 1))
@@ -34,7 +37,10 @@ def covariance(problem: Problem, fit: Fit) -> FloatArray:
 
 
 def estimates(problem: Problem, fits: list[Fit]) -> list[dict[str, Estimate]]:
-    """For each effect of the first fit, its parameters with intervals that cover those of the other fits (other forms of the same effects)."""
+    """For each effect of the first fit, its parameters with intervals at LEVEL (Student's t), cut at the parameters' bounds.
+
+    fits: the same effects, in the same order, in several forms: the intervals cover those of all.
+    """
     quantile = float(stats.t.ppf(0.5 + LEVEL / 2, problem.freedom))
     out: list[dict[str, Estimate]] = []
     for number, one in enumerate(fits):

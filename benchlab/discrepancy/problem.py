@@ -19,15 +19,14 @@ from benchlab.discrepancy.scene import Scene
 from benchlab.units import FloatArray
 
 PRIOR_FREEDOM = 12.0
-"""How many degrees of freedom the fitted scatter counts for, beside the samples' own in one direction."""
+"""How many degrees of freedom the fitted scatter counts for, beside the samples' own in one direction (chosen)."""
 
 
 THINNING = 0.0004
-"""Systematic error of each feature, as a share of the largest value: runs are evaluated at a few points in each interval."""
-
+"""Systematic error of each feature, as a share of the largest value: runs are evaluated at a few points in each interval (chosen)."""
 
 FORM = 0.1
-"""Error of the form of an effect, as a share of the gap that it is to explain: no equation is exact, and what its form leaves is no further effect."""
+"""Error of an effect's form, as a share of the gap that it is to explain (chosen): what a form leaves is no further effect."""
 
 
 class _Alike(NamedTuple):
@@ -43,8 +42,8 @@ class _Alike(NamedTuple):
 class Problem:
     """Features of samples, the scene that predicts them, and the scatter of samples.
 
-    Whitened vectors are (C,): L⁻¹ of each sample's cells, L Lᵀ = V + n u²: scatter between samples, and n times the systematic error, so that
-    the mean over n samples has V/n + u².
+    Whitened vectors are (C,): L⁻¹ of each sample's cells, L Lᵀ = V + n u²: scatter between samples, and n times the systematic error,
+    so that the mean over n samples has V/n + u².
     """
 
     scene: Scene
@@ -60,9 +59,7 @@ class Problem:
     def systematic(self) -> FloatArray:
         """(F,): error of the model's own numbers, the same for all samples: of thinning the runs, and of the form of what is missing."""
         features = self.features.features
-        base = self.features.collect(predict(self.scene, (), self.features.quantities))
-        number = np.bincount(self.features.feature, minlength=len(features))
-        mean = np.bincount(self.features.feature, base, minlength=len(features)) / np.maximum(number, 1)
+        mean = self.mean_over_samples(self.features.collect(predict(self.scene, (), self.features.quantities)))
         quantity = np.array([feature.quantity for feature in features])
         found = np.zeros(len(features))
         for name in self.features.quantities:
@@ -74,21 +71,28 @@ class Problem:
     def _gap_beyond_scatter(self, base: FloatArray, mine: NDArray[np.bool_]) -> float:
         """RMS of the gap between the means and the base, without what scatter brings."""
         number = np.bincount(self.features.feature, minlength=len(base))
-        measured = np.bincount(self.features.feature, self.features.value, minlength=len(base)) / np.maximum(number, 1)
-        variance = np.empty(len(base))
-        for where, covariance in zip(self.scatter.features_of, self.scatter.covariance):
-            variance[where] = np.diag(covariance) / np.maximum(number[where], 1)
         known = mine & (number > 0)
-        return float(np.sqrt(max(float(np.mean((measured - base)[known] ** 2 - variance[known])), 0.0)))
+        gap = (self.mean_over_samples(self.features.value) - base)[known]
+        return float(np.sqrt(max(float(np.mean(gap**2 - self.variance_of_means[known])), 0.0)))
+
+    def mean_over_samples(self, cells: FloatArray) -> FloatArray:
+        """(C,) → (F,): 0 for a feature that no sample has."""
+        number = np.bincount(self.features.feature, minlength=len(self.features.features))
+        return np.asarray(np.bincount(self.features.feature, cells, minlength=len(number)) / np.maximum(number, 1))
 
     @cached_property
-    def error_of_means(self) -> float:
-        """RMS standard error of the features' means over samples, in the unit of the quantity."""
+    def variance_of_means(self) -> FloatArray:
+        """(F,): by scatter, of each feature's mean over its samples; of one sample where none has it."""
         number = np.bincount(self.features.feature, minlength=len(self.features.features))
         variance = np.empty(len(number))
         for where, covariance in zip(self.scatter.features_of, self.scatter.covariance):
             variance[where] = np.diag(covariance) / np.maximum(number[where], 1)
-        return float(np.sqrt(np.mean(variance)))
+        return variance
+
+    @property
+    def error_of_means(self) -> float:
+        """RMS standard error of the features' means over samples, in the unit of the quantity."""
+        return float(np.sqrt(np.mean(self.variance_of_means)))
 
     @cached_property
     def _factors(self) -> list[_Alike]:
@@ -166,7 +170,7 @@ class Problem:
         return np.searchsorted(self.features.sample, np.arange(self.samples))
 
     @cached_property
-    def _within(self) -> FloatArray:
+    def within_design(self) -> FloatArray:
         """(S, S): takes values of samples to their deviations from the mean of their design."""
         design = self.features.sample_design
         same = design[:, None] == design[None, :]
@@ -181,7 +185,7 @@ class Problem:
         return self._t(self.per_sample(directions * residual[:, None]), self._errors(directions))
 
     def largest_t_of_noise(self, directions: FloatArray, noise: FloatArray) -> FloatArray:
-        """(draws,): largest t over the directions (C, K) in each draw of `noise`."""
+        """(draws,): largest t over the directions (C, K) in each draw of `noise` (draws, C), with the error that is fitted."""
         between, common = self._errors(directions)
         variance = between.sum(axis=0) + common
         used = variance > 1e-12
@@ -192,8 +196,7 @@ class Problem:
 
         The scatter is itself only known from Σ(n − 1) deviations, which its fit follows: each draw's is larger or smaller by √(f/χ²_f).
         """
-        freedom = max(self.scatter.freedom, 1)
-        unknown = np.sqrt(freedom / generator.chisquare(freedom, draws))[:, None]
+        unknown = np.sqrt(self.freedom / generator.chisquare(self.freedom, draws))[:, None]
         out = np.empty((draws, len(self.features.value)))
         common = generator.standard_normal((draws, len(self.features.features))) * self.systematic
         for alike in self._factors:
@@ -231,25 +234,23 @@ class Problem:
         return self.systematic[:, None] * together
 
     def _t(self, scores: FloatArray, errors: tuple[FloatArray, FloatArray]) -> FloatArray:
-        """scores: (…, S, K) → (…, K)."""
+        """t of the scores (S, K) → (K,): their sum over its standard error, 0 where that is none. errors: of _errors."""
         information, common = errors
         design = self.features.sample_design
         n = np.bincount(design)[design]
-        deviation = self._within @ scores
+        deviation = self.within_design @ scores
         expected = (information * ((n - 1) / n)[:, None]).sum(axis=0)
         freedom = self.scatter.freedom
-        ratio = np.divide(
-            (deviation**2).sum(axis=-2), expected, out=np.ones(scores.shape[:-2] + expected.shape), where=expected > 0
-        )
+        ratio = np.divide((deviation**2).sum(axis=0), expected, out=np.ones(expected.shape), where=expected > 0)
         inflation = (PRIOR_FREEDOM + freedom * ratio) / (PRIOR_FREEDOM + freedom)
         variance = inflation * information.sum(axis=0) + common
         return np.asarray(
-            np.divide(scores.sum(axis=-2), np.sqrt(variance), out=np.zeros_like(variance), where=variance > 1e-12)
+            np.divide(scores.sum(axis=0), np.sqrt(variance), out=np.zeros_like(variance), where=variance > 1e-12)
         )
 
     @property
     def freedom(self) -> float:
-        """Of the scatter between samples."""
+        """Degrees of freedom of the scatter between samples, 1 at least."""
         return max(self.scatter.freedom, 1)
 
 

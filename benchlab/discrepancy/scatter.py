@@ -2,9 +2,9 @@
 
     V = gain² g gᵀ + pressure² s sᵀ + shape² S + loop² l lᵀ + (runs: offset², gain²) + drift (two times) + white²/count + local²
 
-g: the design's mean curve; s: its slope; S: a smooth deviation over pressure; l: the loop's width; of each quantity apart. The deviations of
-samples from their design's mean have a covariance of V (n − 1)/n, whose likelihood (restricted maximum likelihood; Searle, Casella and
-McCulloch, Variance Components, 1992) is maximised. So the simulation has no say in it.
+g: the design's mean curve; s: its slope; S: a smooth deviation over pressure; l: the loop's width; of each quantity apart. Between the n
+samples of a design, Σ(x − x̄)(x − x̄)ᵀ is Wishart with n − 1 degrees of freedom and V, whose likelihood (restricted maximum likelihood;
+Searle, Casella and McCulloch, Variance Components, 1992) is maximised. So the simulation has no say in it.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from benchlab.discrepancy.features import Feature, Features
 from benchlab.units import FloatArray
 
 TIMES_S = (0.5, 5.0)
-"""Correlation times of drift within a run."""
+"""Correlation times of drift within a run (chosen)."""
 
 SHAPE_RANGE = 0.3
-"""Over which share of the largest pressure a sample's smooth deviation keeps its sign."""
+"""Over which share of the largest pressure a sample's smooth deviation keeps its sign (chosen)."""
 
 NAMES = ("gain", "pressure", "shape", "loop", "run offset", "run gain", "fast drift", "slow drift", "white", "local")
 
@@ -39,15 +39,14 @@ class Scatter:
 
 
 def scatter_of(features: Features) -> Scatter:
-    """Fit the variance components. freedom is 0 where no design has two samples; then the covariance is that of the readings' noise alone."""
+    """Fit the variance components. Where no design has two samples, freedom is 0 and the components are those that fits begin with."""
     designs = len(np.unique(features.sample_design))
     of_design = np.array([feature.design for feature in features.features])
     indices = tuple(np.flatnonzero(of_design == d) for d in range(designs))
     mean = feature_means(features)
     quantities = features.quantities
-    blocks = [
-        components_of([features.features[i] for i in where], mean[where], _count(features)[where]) for where in indices
-    ]
+    count = _count(features)
+    blocks = [components_of([features.features[i] for i in where], mean[where], count[where]) for where in indices]
     patterns = _patterns(features, indices, mean)
     log_sd, freedom = {}, sum(max(int((features.sample_design == d).sum()) - 1, 0) for d in range(designs))
     for quantity in quantities:
@@ -69,7 +68,7 @@ def feature_means(features: Features) -> FloatArray:
 
 
 def _count(features: Features) -> FloatArray:
-    """(F,): readings per sample."""
+    """(F,): readings per sample, harmonic mean."""
     total = np.bincount(features.feature, 1 / features.count, minlength=len(features.features))
     return np.asarray(np.bincount(features.feature, minlength=len(features.features)) / total)
 
@@ -139,9 +138,9 @@ def _patterns(features: Features, indices: tuple[NDArray[np.int64], ...], mean: 
         places[key] = place
     out = []
     for (design, code), deviations in groups.items():
-        n = float((features.sample_design == design).sum())
-        stacked = np.array(deviations)
-        out.append((design, places[design, code], stacked.T @ stacked * (n - 1) / n, len(deviations) * (n - 1) / n))
+        samples = float((features.sample_design == design).sum())
+        stacked, share = np.array(deviations), (samples - 1) / samples
+        out.append((design, places[design, code], stacked.T @ stacked * (samples - 1) / samples, len(stacked) * share))
     return out
 
 
@@ -152,7 +151,7 @@ def _fit(
     patterns: list[Pattern],
     quantity: str,
 ) -> FloatArray:
-    """Logarithms of the components' standard deviations."""
+    """Logarithms of the components' standard deviations, between bounds (chosen)."""
     names = [np.array([features.features[i].quantity for i in where]) for where in indices]
     pieces = []
     for design, place, products, number in patterns:
