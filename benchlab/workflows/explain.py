@@ -133,12 +133,13 @@ def explain_frame(
     cache: Path | None = None,
     jobs: int = 1,
     every_fit: bool = False,
+    propose: bool = True,
     material: str = DEFAULT_MATERIAL,
 ) -> dict[str, Any]:
     """The answer of `benchlab explain --json` for tables in memory; nothing is written, `next_experiment.protocol` is the text of it.
 
     frame, designs: with the columns of MEASURED and --designs. base: in place of a simulation. every_fit: also each effect fitted alone,
-    as tables of samples and features. Raises as the command.
+    as tables of samples and features. propose: also the next experiment. Raises as the command.
     """
     measured, shapes = measured_of_frame(frame, "a table"), designs_of_frame(designs)
     if base is None:
@@ -151,7 +152,7 @@ def explain_frame(
             cache=cache or default_cache(),
         )
         base = cell if simulation is None else foreign_base(read_simulated(simulation), shapes, cell, simulation.name)
-    found = explain_measured(measured, base, seed=seed)
+    found = explain_measured(measured, base, seed=seed, propose=propose)
     answer = answer_of(found.explanation)
     following = found.explanation.next_experiment
     if following is not None and following.experiment is not None:
@@ -181,9 +182,10 @@ def largest_MPa(measured: Measured | Summary) -> float:
 
 
 def _every_fit(found: Explained) -> dict[str, Any]:
-    """As rules that choose by a misfit alone take them."""
+    """As rules that choose by a misfit alone take them; no fit where it is not known how samples scatter."""
     problem, judged = found.problem, found.explanation.judged_not
-    fits = fits_of(problem, [effect for name, effect in effects().items() if name not in judged])
+    usable = [effect for name, effect in effects().items() if name not in judged]
+    fits = [] if found.explanation.only_described else fits_of(problem, usable)
     return {
         "measured": measured_matrix(problem),
         "design": [problem.scene.names[design] for design in problem.features.sample_design],

@@ -5,12 +5,14 @@ from __future__ import annotations
 import csv
 import json
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from benchlab.io.model_file import read_model
@@ -134,7 +136,7 @@ BAD: dict[str, tuple[Callable[[Rows], Rows], str]] = {
         lambda rows: [{**row, "pressure_MPa": str(float(row["pressure_MPa"]) + 0.6)} for row in rows],
         "no measured value lies where there is a simulated curve",
     ),
-    "one sample": (lambda rows: [row for row in rows if row["sample"] == "s1"], "one sample of each design"),
+    "a few readings": (lambda rows: rows[:12], "readings cannot carry a verdict"),
     "no unit": (lambda rows: renamed(rows, pressure_MPa="pressure"), "no unit"),
     "two units": (lambda rows: [{**row, "angle_rad": "1"} for row in rows], "angle"),
     "no angle": (lambda rows: [{**row, "angle_deg": "NaN"} for row in rows], "cells hold no number"),
@@ -237,16 +239,80 @@ def test_without_bulging_windows_the_published_table_names_them(tmp_path: Path, 
     assert done.json["gap"]["rmse_after"] < 0.15 * done.json["gap"]["rmse_before"]
 
 
-def test_soft_fingers_of_another_lab_carry_no_verdict(real_folder: Path, benchlab: Any) -> None:
+def test_one_sample_is_described(folder: Path, benchlab: Any) -> None:
+    """Its friction is seen as a loop, and not named."""
+    changed(folder / "loops.csv", lambda rows: [row for row in rows if row["sample"] == "s1"])
+    given = ("--simulation", folder / "simulated.csv", "--out", folder / "out", "--json")
+    done = benchlab("explain", folder / "loops.csv", *given)
+    assert done.code == 0, done.err
+    answer = done.json
+    assert answer["verdict"] == "unexplained" and not list(names_in(answer)) and answer["model"] is None
+    assert answer["p_gap"] is None and answer["false_naming_nominal"] is None
+    assert {region["p"] for region in answer["where"]} == {None}
+    assert any("with the direction" in line for line in answer["remainder"])
+    page = (folder / "out" / "report.html").read_text(encoding="utf-8")
+    assert "described only" in page and not re.search(r">[^<]*\bnan\b", page)
+    assert "nan" not in done.err and "on the data of the fit" not in done.err
+
+
+def test_soft_fingers_of_another_lab_are_described(real_folder: Path, benchlab: Any) -> None:
     """One sample of each configuration, measured once: that they differ may be their scatter."""
     columns = "design=Configuration,pressure_kPa=Pressure,angle_deg=Theta6"
     (measured,), (simulated,) = (
         list((real_folder / "actuators").glob(f"Hiroshan*{kind}*")) for kind in ("Experimental", "Simulation_Data")
     )
+    given = ("--columns", columns, "--simulation", simulated, "--simulation-columns", columns)
+    done = benchlab("explain", measured, *given, "--json")
+    assert done.code == 0, done.err
+    answer = done.json
+    assert answer["verdict"] == "unexplained" and not list(names_in(answer)) and answer["samples"] == 14
+    assert {region["p"] for region in answer["where"]} == {None}
+    whole = [region for region in answer["where"] if region["design"] == "DS10DS30_2_1"]
+    curves = [
+        {
+            float(row["Pressure"]): float(row["Theta6"])
+            for row in read_bom(path)
+            if row["Configuration"] == "DS10DS30_2_1"
+        }
+        for path in (measured, simulated)
+    ]
+    gap = [angle - curves[1][p] for p, angle in curves[0].items() if p in curves[1]]  # every 68 kPa
+    assert len(whole) == 1 and whole[0]["gap"] == pytest.approx(sum(gap) / len(gap), abs=1.5)
+    assert any("with the design: -2.5 on average for DS30E30_1_1" in line for line in answer["remainder"])
+    assert any("neither a name nor a probability" in line for line in answer["warnings"])
+    assert sum("measured but not simulated" in line for line in answer["warnings"]) == 1
+    assert answer["next_experiment"]["setup"].startswith("two samples of each design")
+
+
+def read_bom(path: Path) -> Rows:
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_the_loop_of_a_braided_muscle_is_described(real_folder: Path, benchlab: Any, tmp_path: Path) -> None:
+    """Its own loading, medians in steps of 40 kPa, stands for the simulation: unloading, it pushes more at the same pressure."""
+    (muscle,) = (real_folder / "actuators").glob("Agile*")
+    force, pressure, time, _ = np.loadtxt(muscle, delimiter=",").T
+    step = np.where(time < 14.5, pressure // 40, -1)
+    rising = [
+        {"design": "unnamed", "pressure_kPa": np.median(pressure[step == n]), "blocked_force_N": np.median(force[step == n])}
+        for n in np.unique(step[step >= 0]) if (step == n).sum() > 20
+    ]  # fmt: skip
+    simulation = write(tmp_path / "rising.csv", rising)
     done = benchlab(
-        "explain", measured, "--columns", columns, "--simulation", simulated, "--simulation-columns", columns
+        "explain", muscle, "--columns", "force_N=1,pressure_kPa=2,time_s=3", "--simulation", simulation, "--json"
     )
-    assert done.code == 3 and "what scatters cannot be told from what is missing" in done.err
+    assert done.code == 0, done.err
+    answer = done.json
+    assert answer["verdict"] == "unexplained" and not list(names_in(answer))
+    widest = max(
+        (r for r in answer["where"] if r["direction"] == "unloading"),
+        key=lambda r: r["pressure_MPa"][1] - r["pressure_MPa"][0],
+    )
+    assert widest["gap"] > 0 and widest["pressure_MPa"][1] > 0.5 and widest["p"] is None
+    (line,) = (line for line in answer["remainder"] if "with the direction" in line)
+    assert "on average for loading, +" in line and line.endswith("for unloading")
+    assert answer["not_judged"]["camera_scale"] == "it does not show in force_N"
 
 
 def test_a_muscle_without_a_simulation_is_refused(real_folder: Path, benchlab: Any) -> None:
