@@ -31,6 +31,7 @@ def explain_measured(
     seed: int = 1,
     progress: Callable[[str], None] | None = None,
     limits: BenchLimits | None = None,
+    propose: bool = True,
 ) -> Explained:
     """The explanation, and where it leaves something open the experiment to come; its protocol is not written yet.
 
@@ -40,6 +41,8 @@ def explain_measured(
     missing = {name: effect for name, effect in effects().items() if name not in there}
     with threadpool_limits(1):  # of BLAS: its matrices are small, and more threads only wait for each other
         found = explain(measured, base, missing, seed=seed, progress=progress)
+        if not propose:
+            return found
         if progress:
             progress("the next experiment")
         following = next_experiment(found, limits or _limits(measured, base))

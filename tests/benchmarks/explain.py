@@ -88,7 +88,7 @@ def answer_case(case: Case, card: str, identifier: str, baselines: bool) -> dict
     begun = time.perf_counter()
     try:
         more = {"every_fit": True} if baselines else {}
-        result = explain(study.frame, study.designs, seed=case.seed, **more)
+        result = explain(study.frame, study.designs, seed=case.seed, **more, **_proposed(case, identifier))
         record["seconds"] = round(time.perf_counter() - begun, 3)
         every_fit = result.pop("every_fit", None)
         record["result"] = result
@@ -154,6 +154,11 @@ def _wanted(every: Sequence[Case], asked: Sequence[str]) -> list[Case]:
     if len(asked) == 1 and asked[0].isdigit():
         return mixed[: int(asked[0])]
     return [case for case in mixed if any(fnmatch.fnmatch(case.name, pattern) for pattern in asked)]
+
+
+def _proposed(case: Case, identifier: str) -> dict[str, bool]:
+    """An experiment is proposed for pairs alone, where it is run: for the others it would only take time."""
+    return {"propose": case.kind == "pair"} if identifier == IDENTIFIER else {}
 
 
 def _explainer(identifier: str) -> Explain:
