@@ -137,11 +137,8 @@ def explain(measured: tuple[Path, ...], loop: bool, strict: bool, as_json: bool,
     with stages() as tell:
         found = _around(measured, options, tell) if loop else _once(measured, options, tell)
     click.echo("\n".join(told(found.explanation)), err=True)
-    if ended := found.answer.get("loop"):
-        click.echo(
-            f"\nLoop: {counted(len(ended['rounds']), 'round')} on {printable(ended['measured_on'])}; {printable(ended['ended'])}",
-            err=True,
-        )
+    if loop:
+        click.echo("\n".join(map(printable, _loop_lines(found.answer["loop"]))), err=True)
     _tell_files(found.answer.get("outputs", []))
     if as_json:
         click.echo(json.dumps(found.answer, indent=2, allow_nan=False))
@@ -200,6 +197,23 @@ def _around(measured: tuple[Path, ...], options: dict[str, Any], tell: Any) -> A
         options["twin"],
     )
     return explain_around(settings, lambda line: click.prompt(line, default="", show_default=False, err=True), tell)
+
+
+def _loop_lines(told: dict[str, Any]) -> list[str]:
+    """What was run in each round and what came out, why there is no further round, and on what all of it was measured.
+
+    >>> one = {"round": 1, "experiment": "one cycle", "verdict": "ambiguous", "effects": ["a"], "rivals": [["a"], ["b"]]}
+    >>> two = {"round": 2, "experiment": "a step", "verdict": "named", "effects": ["a"], "rivals": []}
+    >>> _loop_lines({"rounds": [one, two], "ended": "one explanation is left", "measured_on": "a twin"})[2:4]
+    ['  round 1: one cycle: ambiguous, 2 explanations left', '  round 2: a step: named, a']
+    """
+    rounds = [
+        f"  round {one['round']}: {one['experiment']}: {one['verdict']}"
+        + (f", {counted(len(one['rivals']), 'explanation')} left" if one["rivals"] else "")
+        + (f", {', '.join(one['effects'])}" if one["effects"] and not one["rivals"] else "")
+        for one in told["rounds"]
+    ]
+    return ["", "Loop:", *rounds, f"  ended: {told['ended']}", f"  measured on: {told['measured_on']}"]
 
 
 def _tell_files(paths: list[str]) -> None:
