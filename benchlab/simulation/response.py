@@ -11,10 +11,13 @@ import numpy as np
 
 from benchlab.errors import UsageError
 from benchlab.simulation.cell import Cell, State
-from benchlab.simulation.newton import Solved, minimise
+from benchlab.simulation.newton import TOLERANCE, Solved, minimise
 
 SMALLEST_STEP_MPa = 5e-4
 """Below this a pressure step is not cut further: the pressure before it is the limit."""
+
+_ALMOST = 1.01
+"""A step that ends this near to a pressure asked for ends there: two states that differ by rounding say nothing of the next one."""
 
 _LARGEST_GROWTH = 1.5
 """Times the volume before: a step that grows the cell by more is taken again, in halves."""
@@ -47,18 +50,20 @@ def follow(
     pressures_MPa: Sequence[float],
     held_k: float | None = None,
     reached: Callable[[], None] | None = None,
+    tolerance: float = TOLERANCE,
 ) -> Path:
     """Stable states of the cell at growing pressures, from the round tube on.
 
     held_k: None, free to bend; or the angle per unstretched length (rad/mm) at which the cell is held.
-    reached: called after each pressure. Raises UsageError where the pressures do not grow or are negative.
+    reached: called after each pressure. tolerance: of the last step, as of `minimise`. Raises UsageError where the pressures do not
+    grow or are negative.
     """
     check_pressures(pressures_MPa)
     start = cell.round_tube() if held_k is None else replace(cell.round_tube(), k=held_k)
     known: list[tuple[float, State]] = []
     points: list[PathPoint] = []
     for pressure in pressures_MPa:
-        solved = _reach(cell, start, known, float(pressure), held_k)
+        solved = _reach(cell, start, known, float(pressure), held_k, tolerance)
         if solved is None:
             return Path(tuple(points), known[-1][0] if known else 0.0)
         points.append(PathPoint(float(pressure), solved.state, moment_Nmm(cell, solved) if held_k is not None else 0.0))
@@ -98,17 +103,22 @@ def check_pressures(pressures_MPa: Sequence[float]) -> None:
 
 
 def _reach(
-    cell: Cell, start: State, known: list[tuple[float, State]], pressure: float, held_k: float | None
+    cell: Cell,
+    start: State,
+    known: list[tuple[float, State]],
+    pressure: float,
+    held_k: float | None,
+    tolerance: float,
 ) -> Solved | None:
     """The state at `pressure`, in as many steps as it takes from the last known one; steps taken are added to `known`."""
     free = (held_k is None, True)
     reached = known[-1][0] if known else 0.0
     step = pressure - reached
     while True:
-        target = min(pressure, reached + step)
+        target = pressure if pressure - reached < _ALMOST * step else reached + step
         guess = extrapolated(known, target) if known else start
         most = _LARGEST_GROWTH * cell.volume_mm3(known[-1][1] if known else start)
-        solved = _stable_state(cell, target, guess, free, most)
+        solved = _stable_state(cell, target, guess, free, most, tolerance)
         if solved.converged:
             known.append((target, solved.state))
             if target == pressure:
@@ -120,9 +130,17 @@ def _reach(
             step /= 4
 
 
-def _stable_state(cell: Cell, pressure: float, guess: State, free: tuple[bool, bool], most_volume_mm3: float) -> Solved:
+def _stable_state(
+    cell: Cell, pressure: float, guess: State, free: tuple[bool, bool], most_volume_mm3: float, tolerance: float
+) -> Solved:
+    """Looked at after the last step only where it is held: the moment is the slope of its potential."""
     return minimise(
-        lambda at: cell.potential(at, pressure), guess, free, astray=lambda at: cell.volume_mm3(at) > most_volume_mm3
+        lambda at: cell.potential(at, pressure),
+        guess,
+        free,
+        tolerance=tolerance,
+        astray=lambda at: cell.volume_mm3(at) > most_volume_mm3,
+        look=not free[0],
     )
 
 

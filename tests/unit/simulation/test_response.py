@@ -81,6 +81,23 @@ def test_newton_goes_down_and_says_when_it_does_not_arrive():
     assert solved.state.k == pytest.approx(follow(CELL, [0.1]).points[0].state.k, rel=1e-6)
 
 
+def test_pressures_that_add_up_but_for_rounding_are_no_two_states():
+    # 0.0006 + 0.0013 < 0.0019 in floating point: a state between the two would make the next extrapolation wild.
+    pressures = [0.0006, 0.0019, 0.0032, 0.005]
+    assert pressures[0] + (pressures[1] - pressures[0]) != pressures[1]
+    path = follow(CELL, pressures)
+    assert path.limit_pressure_MPa is None
+    k = [point.state.k for point in path.points]
+    assert k == pytest.approx(k[-1] / 0.005 * np.array(pressures), rel=0.02)
+
+
+def test_a_last_step_that_is_not_looked_at_is_the_same_step():
+    start = follow(CELL, [0.09]).points[0].state
+    seen, unseen = (minimise(lambda at: CELL.potential(at, 0.1), start, look=look) for look in (True, False))
+    assert seen.steps == unseen.steps and (seen.state.fields == unseen.state.fields).all()
+    assert seen.state.k == unseen.state.k and unseen.converged
+
+
 @pytest.mark.parametrize(
     "pressures, said", [([], "no pressure"), ([-0.1], "-0.1"), ([0.1, 0.1], "follows"), ([float("nan")], "nan")]
 )
