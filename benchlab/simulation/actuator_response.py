@@ -16,7 +16,7 @@ from benchlab.errors import UsageError
 from benchlab.simulation.cell import Cell
 from benchlab.simulation.laws.law import FloatArray
 from benchlab.simulation.layup import Layup
-from benchlab.simulation.neighbour import follow_beside
+from benchlab.simulation.neighbour import Neighbour, follow_beside
 from benchlab.simulation.response import Path
 
 PUBLISHED_LEVER_ARM_MM = 4.5
@@ -120,7 +120,7 @@ def actuator_response(
     cap_mm: float = 0.0,
     blocked: bool = True,
     progress: Callable[[int, int], None] | None = None,
-    beside: ActuatorResponse | None = None,
+    beside: Neighbour | ActuatorResponse | None = None,
     **cell_options: Any,
 ) -> ActuatorResponse:
     """Simulate an actuator at growing pressures (MPa). cap_mm: rigid length at each end. blocked: also held straight.
