@@ -109,6 +109,8 @@ def _tiles(explanation: Explanation) -> Iterator[Tile]:
     held = math.isfinite(gap.heldout_before) and math.isfinite(gap.heldout_after)
     before, after = (gap.heldout_before, gap.heldout_after) if held else (gap.rmse_before, gap.rmse_after)
     where = f"on held-out {unseen(explanation)}" if held else "on the data of the fit"
+    if explanation.only_described:
+        where = "measured − simulated"
     if explanation.effects:
         value = f"{quantity.amount(before)} → {quantity.amount(after)}"
         yield Tile(value, f"gap, root mean square, {where}", f"{quantity.noun}, before → after")

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from benchlab.discrepancy.explanation import VERDICTS, Estimate, Gap
+from benchlab.discrepancy.explanation import VERDICTS, Estimate, Gap, Region
 from benchlab.report.explain.words import SIMULATED, parameter_text, told, verdict_words
 from tests.unit.report import explanations
 from tests.unit.report.explanations import NAN
@@ -43,6 +43,24 @@ def test_unexplained() -> None:
     assert "explains it: friction comes nearest, and the gap falls from 4.9° to 1.3°" in verdict_words(nearest)
 
 
+def test_what_is_only_described_says_so_and_has_no_p() -> None:
+    found = explanations.alone()
+    region = Region("mine", "angle_deg", "unloading", None, None, (0.1, 0.3), 4.0, NAN)
+    lines = told(replace(found, where=(region,)))
+    assert lines[0].startswith(
+        "Measured and simulated bending angle θ differ by 2.4° (root mean square). Whether that is more than samples"
+    )
+    assert any(line.startswith("  mine bends 4.0° more than simulated from 0.10 to 0.30 MPa") for line in lines)
+    assert not any("p =" in line or "nan" in line or "data of the fit" in line for line in lines)
+
+
+def test_the_rate_of_false_names_is_nominal() -> None:
+    assert (
+        "  nominal rate of false names 3 %: of studies in which nothing is missing, to which the rules are calibrated"
+        in told(explanations.explanation())
+    )
+
+
 def test_without_held_out_samples_it_says_so() -> None:
     bare = explanations.explanation(gap=Gap(4.8, 0.72, NAN, NAN, NAN, NAN))
     text = verdict_words(bare)
@@ -55,6 +73,9 @@ def test_of_a_table_of_means_designs_are_held_out() -> None:
     table = replace(explanations.published(), held_out=designs, gap=Gap(5.1, 2.6, 5.2, 3.1, 2.96, NAN))
     assert "from 5.2° to 3.1° on designs that the fit has not seen" in verdict_words(table)
     assert "  on held-out designs 5.2° → 3.1°" in told(table)
+    assert "; 3.0° is the standard error of the means." in verdict_words(table)
+    assert any(line.startswith("  standard error 3.0°: of the means") for line in told(table))
+    assert not any("noise floor" in line for line in told(table))
 
 
 def test_a_gap_that_does_not_shrink_is_not_said_to_fall() -> None:
