@@ -120,3 +120,8 @@ def test_a_column_that_says_nothing_is_not_told() -> None:
     even = np.tile([1.0, 2.0], 18)
     runs = [timeless(name, gap, against={"even": even}) for name, gap in zip(NAMES, (-3.0, 3.0))]
     assert "column" not in "\n".join(described(*runs).remainder)
+
+
+def test_an_even_gap_goes_with_nothing() -> None:
+    words = described(*(timeless(name, 3.0) for name in NAMES)).remainder[1:]
+    assert words == ("100% of it is the same everywhere: +3",)
