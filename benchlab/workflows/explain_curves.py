@@ -15,6 +15,7 @@ from benchlab.errors import InputError
 from benchlab.simulation.actuator_response import ActuatorResponse, Curves, Fixture, actuator_response
 from benchlab.simulation.beam import beam_response
 from benchlab.simulation.layup import Layup
+from benchlab.simulation.neighbour import Neighbour, neighbour_at
 from benchlab.units import FloatArray
 from benchlab.workflows.explain_structure import design_with, knob_values
 
@@ -86,10 +87,10 @@ def curves_with_knobs(name: str, design: ShellDesign, wanted: Wanted) -> Solved:
         notes.append(f"{name}: no blocked force, because no stable state was found when held straight at all pressures")
     dense = np.interp(np.arange((len(pressures) - 1) * FINER + 1) / FINER, np.arange(len(pressures)), pressures)
     curves = _dense(neutral, quantities, dense)
-    few = np.union1d([0], np.arange(len(pressures) - 1, 0, -2))
+    few = pressures[np.arange(len(pressures) - 1, 0, -2)[::-1]]
     knobs = {}
     for knob in wanted.knobs:
-        values, rows = _varied(knob, design, wanted, neutral, pressures[few], quantities, dense)
+        values, rows = _varied(knob, design, wanted, neutral, few, quantities, dense)
         if len(values) > 1:
             factor = {q: np.stack([_factor(row[q], curves[q]) for row in rows]) for q in quantities}
             knobs[knob] = Knob(values, factor)
@@ -105,16 +106,15 @@ def respond(
     wanted: Wanted,
     knobs: Mapping[str, float],
     pressures_MPa: FloatArray | tuple[float, ...],
-    beside: Curves | None = None,
+    beside: Neighbour | None = None,
 ) -> Curves:
-    """The design with knobs at these values, simulated anew. beside: a response to begin from, of the cell."""
+    """The design with knobs at these values, simulated anew. beside: states to begin from, of the cell."""
     changed, layup = design_with(design, wanted.layup, knobs)
     pressures = [float(p) for p in pressures_MPa]
     if wanted.kind == "beam":
         ballooning = knobs.get("ballooning", KNOBS["ballooning"][0])
         return beam_response(changed, layup, pressures, wanted.fixture, blocked=wanted.forces, ballooning=ballooning)
-    near = beside if isinstance(beside, ActuatorResponse) else None
-    return actuator_response(changed, layup, pressures, wanted.fixture, blocked=wanted.forces, beside=near)
+    return actuator_response(changed, layup, pressures, wanted.fixture, blocked=wanted.forces, beside=beside)
 
 
 QUANTITY: Mapping[str, Callable[[Curves], FloatArray]] = {
@@ -136,24 +136,35 @@ def _varied(
     """Values of a knob, those around the neutral one with which every pressure is reached, with their curves at `dense`."""
     at_neutral = KNOBS[knob][0]
     rows = {at_neutral: _dense(neutral, quantities, dense)}
+    unloaded = {q: QUANTITY[q](neutral)[:1] for q in quantities}
+    known = {at_neutral: Neighbour(neutral.free, neutral.held)} if isinstance(neutral, ActuatorResponse) else {}
     wished = sorted(set(knob_values(knob, design, wanted.layup)))
     above = [value for value in wished if value > at_neutral]
     below = [value for value in reversed(wished) if value < at_neutral]
     for side in (above, below):
         for value in side:
-            found = respond(design, wanted, {knob: value}, pressures, beside=neutral)
+            beside = neighbour_at(value, known) if known else None
+            found = respond(design, wanted, {knob: value}, pressures, beside)
             whole = all(np.isfinite(QUANTITY[q](found)).all() for q in quantities)
             if len(found.pressure_MPa) < len(pressures) or not whole:
                 break
-            rows[value] = _dense(found, quantities, dense)
+            if isinstance(found, ActuatorResponse):
+                known[value] = Neighbour(found.free, found.held)
+            rows[value] = _dense(found, quantities, dense, unloaded)
     values = sorted(rows)
     return np.array(values), [rows[value] for value in values]
 
 
-def _dense(found: Curves, quantities: list[str], pressures_MPa: FloatArray) -> dict[str, FloatArray]:
+def _dense(
+    found: Curves, quantities: list[str], pressures_MPa: FloatArray, unloaded: Mapping[str, FloatArray] | None = None
+) -> dict[str, FloatArray]:
+    """Splines. unloaded: (1,) each, at 0 MPa, where no knob changes anything, for curves that begin later."""
     from scipy.interpolate import CubicSpline
 
-    return {q: CubicSpline(found.pressure_MPa, QUANTITY[q](found))(pressures_MPa) for q in quantities}
+    if unloaded is None:
+        return {q: CubicSpline(found.pressure_MPa, QUANTITY[q](found))(pressures_MPa) for q in quantities}
+    at = np.concatenate([[0.0], found.pressure_MPa])
+    return {q: CubicSpline(at, np.concatenate([unloaded[q], QUANTITY[q](found)]))(pressures_MPa) for q in quantities}
 
 
 def _factor(changed: FloatArray, neutral: FloatArray) -> FloatArray:
