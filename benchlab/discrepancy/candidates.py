@@ -44,9 +44,10 @@ def fits_with(problem: Problem, before: Fit, bank: Bank, name: str) -> list[Fit]
 
 
 def p_enough(problem: Problem, candidate: Fit, best: Fit) -> tuple[float, float]:
-    """(p, t) of the candidate being enough, tested in the direction in which the best one differs from it (after Cox 1961): t standard errors.
+    """(p, t) of the candidate being enough: t standard errors in the direction in which the best one differs from it (after Cox 1961).
 
-    What the candidate's own parameters could still take up is left out of the direction."""
+    What the candidate's own parameters could still take up is left out of the direction. p: one-sided, of Student's t.
+    """
     direction = off((best.model - candidate.model)[:, None], candidate.tangent)
     if float((direction**2).sum()) < 1e-6:
         return 1.0, 0.0

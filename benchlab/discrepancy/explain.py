@@ -128,11 +128,8 @@ def _shares(problem: Problem, found: Identified) -> list[float]:
 
 def _gap(problem: Problem, gap: FloatArray, after: FloatArray, parts: tuple, summary: bool) -> Gap:
     rms_before, rms_after = (float(np.sqrt(np.mean(values**2))) for values in (gap, after))
-    variance = np.empty(len(gap))
-    number = np.bincount(problem.features.feature, minlength=len(gap))
-    for where, covariance in zip(problem.scatter.features_of, problem.scatter.covariance):
-        variance[where] = np.diag(covariance) / np.maximum(number[where], 1)
-    floor = float(np.sqrt(np.mean(variance))) if summary else noise_floor(problem)
+    variance = problem.variance_of_means
+    floor = problem.error_of_means if summary else noise_floor(problem)
     kind = "design" if summary else "sample"
     return Gap(
         rmse_before=rms_before,
@@ -180,7 +177,7 @@ def _curves(
     features, kinds = problem.features, problem.features.kinds
     rows = features.features
     number = np.bincount(features.feature, minlength=len(rows))
-    mean = np.bincount(features.feature, features.value, minlength=len(rows)) / np.maximum(number, 1)
+    mean = problem.mean_over_samples(features.value)
     squares = np.bincount(features.feature, (features.value - mean[features.feature]) ** 2, minlength=len(rows))
     sd = np.where(number > 1, np.sqrt(squares / np.maximum(number - 1, 1)), np.nan)
     if isinstance(measured, Summary):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,8 +52,9 @@ class Feature:
 @dataclass(frozen=True)
 class Features:
     """features: F of them, sorted. Cells, (C,) each, sorted by sample and feature: one feature of one sample. sample, feature: indices;
-    value: measured mean; count: of readings. of_point: quantity → (T, R) cell of each point, −1 for none. sample_design: (S,); kinds: of runs.
-    against: further columns named by the user, (F,) each."""
+    value: measured mean; count: of readings. of_point: quantity → (T, R) cell of each point, −1 for none. sample_design: (S,); kinds: of
+    runs. against: further columns named by the user, (F,) each.
+    """
 
     features: tuple[Feature, ...]
     kinds: tuple[Kind, ...]
@@ -117,7 +119,9 @@ class _Points:
 
 
 def features_of(runs: Sequence[Run], base: Base, top_MPa: float | None = None) -> tuple[Features, Scene]:
-    """Features and scene of runs whose designs are all in the base, sorted as Measured has them. top_MPa: largest pressure of the intervals."""
+    """Features and scene of runs whose designs are all in the base, sorted as Measured has them. top_MPa: upper end of the intervals,
+    the largest recorded pressure unless given.
+    """
     names = tuple(sorted({run.design for run in runs}))
     samples = sorted({(run.design, run.sample) for run in runs})
     top = top_MPa or max(float(np.nanmax(run.pressure_MPa)) for run in runs)
@@ -210,11 +214,11 @@ def _intervals(run: Run, segment: Segment, top_MPa: float) -> list[tuple[int, in
     else:
         number = np.clip((_level(run, segment, inside, top_MPa) / top_MPa * BINS).astype(int), 0, BINS - 1)
     borders = [0, *(np.flatnonzero(np.diff(number)) + 1), len(inside)]
-    return [(int(inside[a]), int(inside[b - 1]) + 1, int(number[a])) for a, b in zip(borders[:-1], borders[1:])]
+    return [(int(inside[a]), int(inside[b - 1]) + 1, int(number[a])) for a, b in pairwise(borders)]
 
 
 def _level(run: Run, segment: Segment, inside: NDArray[np.int64], top_MPa: float) -> FloatArray:
-    """Pressure without its noise: the straight line where the segment is one, else the largest (smallest) so far. Without a time as it is."""
+    """Pressure without its noise: the straight line where the segment is one, else the largest (smallest) so far; as it is without time."""
     if segment.direction == "all":
         return run.pressure_MPa[inside]
     ends = [run.time_s[segment.first], run.time_s[segment.last]]
@@ -339,6 +343,6 @@ def _features(
         sample=cell_keys[0],
         feature=cell_keys[1],
         value=per_cell(11),
-        count=np.bincount(cell, table[12], minlength=number),
+        count=np.asarray(np.bincount(cell, table[12], minlength=number), dtype=float),
         of_point=of_point,
     )

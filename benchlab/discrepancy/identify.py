@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,7 +16,6 @@ from benchlab.discrepancy.problem import Problem
 from benchlab.discrepancy.rules import Rules
 from benchlab.units import FloatArray
 
-
 Forms = dict[tuple[str, ...], tuple[Fit, ...]]
 """By sorted names: the fits in all forms, best first."""
 
@@ -24,8 +23,10 @@ Forms = dict[tuple[str, ...], tuple[Fit, ...]]
 @dataclass(frozen=True)
 class Identified:
     """verdict, as in explanation.VERDICTS. best: the model taken (the base alone for agree). rivals: fits that cannot be told from it, it
-    first. tried: all fits of its size. forms: fits of the best effects in forms that are not excluded, the best first. p_gap: of no gap
-    at all; p_left: of nothing being left beside the best. share: of the gap beyond scatter that the best explains."""
+    first, smaller models last. tried: fits of its size, best first, then the smaller models on the way. forms: fits of the best effects in
+    forms that are not excluded, the best first. p_gap: of no gap at all; p_left: of nothing being left beside the best. share: of the gap
+    beyond scatter that the best explains.
+    """
 
     verdict: str
     best: Fit
@@ -35,8 +36,6 @@ class Identified:
     p_gap: float
     p_left: float
     share: float
-    notes: tuple[str, ...] = ()
-    stages: tuple[dict[str, float | str], ...] = field(default=())
 
 
 def identify(
@@ -65,7 +64,6 @@ def identify(
         return Identified("unexplained", bare, (), (), (), min(known.p, unknown.p), unknown.p, 0.0)
     best = tried[0]
     left_over = _left_over(problem, best, forms, anything, noise, rules)
-    stages = [{"model": " + ".join(best.names), "misfit": best.misfit, "left": left_over.p}]
     smaller: list[Fit] = []
     while len(best.names) < rules.most:
         if _further(problem, best, forms, bank, noise, rules) > rules.further:
@@ -76,7 +74,6 @@ def identify(
         if not more:
             break
         rest = _left_over(problem, more[0], more_forms, anything, noise, rules)
-        stages.append({"model": " + ".join(more[0].names), "misfit": more[0].misfit, "left": rest.p})
         if rest.p < rules.adequate and rest.amount > rules.clears * left_over.amount:
             break  # it does not clear up what was left: no effect that is missing, but the form of the one that is there
         smaller.append(best)
@@ -86,18 +83,12 @@ def identify(
     rivals = (*(one for one in tried if in_set(problem, one, best, bare, rules)), *enough)
     tried = [*tried, *smaller]
     verdict = "named" if len(rivals) == 1 else "ambiguous"
-    notes: tuple[str, ...] = ()
-    if p_left < rules.doubtful and share < rules.half:
+    if (p_left < rules.doubtful and share < rules.half) or (
+        p_left < rules.adequate and share < rules.share[min(len(best.names), len(rules.share)) - 1]
+    ):
         verdict = "unexplained"
-    elif p_left < rules.adequate:
-        if share < rules.share[min(len(best.names), len(rules.share)) - 1]:
-            verdict = "unexplained"
-        else:
-            notes = ("named with a remainder",)
     own = tuple(one for one in forms[_key(best)] if one.misfit - best.misfit < 4.0)
-    return Identified(
-        verdict, best, rivals, tuple(tried), own, min(known.p, unknown.p), p_left, share, notes, tuple(stages)
-    )
+    return Identified(verdict, best, rivals, tuple(tried), own, min(known.p, unknown.p), p_left, share)
 
 
 def _extended(problem: Problem, before: Sequence[Fit], bank: Bank, rules: Rules) -> tuple[list[Fit], Forms]:
@@ -127,7 +118,10 @@ def _carried(tried: Sequence[Fit], bare: Fit, rules: Rules) -> list[Fit]:
 
 
 def _plausible(problem: Problem, one: Fit) -> bool:
-    """Whether the means are not farther from the model than from the base, but for their own error: what scatter forgives explains nothing."""
+    """Whether the means are no farther from the model than from the base, but for their own error.
+
+    What scatter forgives explains nothing.
+    """
     before, after = (float(np.mean(gaps(problem, problem.cells(actives)) ** 2)) for actives in ((), one.actives))
     return after < before + problem.error_of_means**2
 

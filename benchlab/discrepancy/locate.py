@@ -1,4 +1,4 @@
-"""Where simulation and measurement disagree: features whose gap is larger than the scatter of samples allows, all of them considered together."""
+"""Where simulation and measurement disagree: features whose gap is more than the scatter of samples allows, all considered together."""
 
 from __future__ import annotations
 
@@ -17,10 +17,7 @@ DRAWS = 2000
 
 def gaps(problem: Problem, cells: FloatArray) -> FloatArray:
     """(F,): measured − model, mean over samples. cells: (C,) of the model."""
-    features = problem.features
-    number = np.bincount(features.feature, minlength=len(features.features))
-    total = np.bincount(features.feature, features.value - cells, minlength=len(number))
-    return np.asarray(total / np.maximum(number, 1))
+    return problem.mean_over_samples(problem.features.value - cells)
 
 
 def gap_p(problem: Problem, cells: FloatArray, generator: np.random.Generator) -> FloatArray:

@@ -9,7 +9,7 @@ from itertools import groupby
 
 import numpy as np
 
-from benchlab.discrepancy.base import Base, DesignBase
+from benchlab.discrepancy.base import Base
 from benchlab.discrepancy.describe import TOLD, scatters, unknown_scatter
 from benchlab.discrepancy.features import Feature, Features, features_of
 from benchlab.discrepancy.kinds import Kind
@@ -48,12 +48,12 @@ def _of_runs(measured: Measured, base: Base) -> tuple[Problem, tuple[str, ...]]:
             "flex_V is compared after a straight line through each sample's own readings: its gain and zero are not judged"
         )
     if not scatters(features):
-        return Problem(scene, features, unknown_scatter(features), base.error), tuple(warnings)
+        return Problem(scene, features, unknown_scatter(features)), tuple(warnings)
     scatter = scatter_of(features)
     lone = [scene.names[d] for d, n in Counter(features.sample_design.tolist()).items() if n < 2]
     if lone:
         warnings.append(f"one sample alone of {', '.join(lone)}: its scatter is taken from the other designs")
-    return Problem(scene, features, scatter, base.error), tuple(warnings)
+    return Problem(scene, features, scatter), tuple(warnings)
 
 
 def _comparable(measured: Measured, base: Base, warnings: list[str]) -> list[Run]:
@@ -134,7 +134,10 @@ def _units(runs: list[Run]) -> tuple[list[Run], list[str]]:
     per_design = Counter(run.design for run in runs)
     if max(per_design.values()) < 3:
         return runs, [TOLD]
-    told = "one sample of each design: its runs are taken for samples, so that the verdict is about these actuators, not about their designs"
+    told = (
+        "one sample of each design: its runs are taken for samples, so that the verdict is about these actuators, not about "
+        "their designs"
+    )
     return [replace(run, sample=f"{run.sample} {run.run}", run_index=None) for run in runs], [told]
 
 
@@ -220,7 +223,6 @@ def _summary_problem(
         scene,
         features,
         Scatter(tuple(covariance), tuple(own), {table.quantity: dict.fromkeys(NAMES, np.nan)}, between),
-        base.error,
     )
 
 
@@ -230,6 +232,3 @@ def _reason(base: Base, name: str) -> str:
 
 def _some(names: Sequence[str]) -> str:
     return ", ".join(names[:5]) + (f" and {len(names) - 5} more" if len(names) > 5 else "")
-
-
-__all__ = ["DesignBase", "prepared"]

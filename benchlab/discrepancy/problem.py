@@ -49,7 +49,6 @@ class Problem:
     scene: Scene
     features: Features
     scatter: Scatter
-    simulation_error: float = 0.0
 
     @property
     def samples(self) -> int:

@@ -1,4 +1,4 @@
-"""The few numbers that decide when something is said. Chosen on the tuning and calibration studies of tests/blind, not on those that are scored."""
+"""The few numbers that decide when something is said: chosen on the tuning and calibration studies of tests/blind, not on the scored."""
 
 from __future__ import annotations
 
@@ -7,14 +7,18 @@ from dataclasses import dataclass, replace
 
 @dataclass(frozen=True)
 class Rules:
-    """first, further: largest p at which a first, a further effect is taken. multiplier: by which t must exceed the bootstrap's quantiles
-    (the fitted scatter is itself uncertain). rival: a candidate that the best one speaks against with a smaller p is out.
-    close: a candidate within this −2 log L of the best stays in; alike: or within this share of what the best explains, as forms are not
-    known better. adequate: smallest p of the flexible test at which nothing is left.
-    doubtful, half: with a p below the first,
-    a model that explains less than the second share is no explanation. share: explained share from which one, two, three effects are named although something is left. moves: smallest RMS that a second, a third effect must move,
-    as a share of the first one's. clears: or what is left to any model falls to this share of it. most: effects in one model. beam: fits that are carried on, near: if within this share of what the best
-    explains. tries: effects that are tried beside each.
+    """first, further: largest p at which a first, a further effect is taken.
+    multiplier: by which t must exceed the bootstrap's quantiles (the fitted scatter is itself uncertain).
+    rival: a candidate that the best one speaks against with a smaller p is out.
+    close, alike: a candidate stays in within this −2 log L of the best, or within this share of what the best explains, as forms are not
+    known better.
+    adequate: smallest p of the flexible test at which nothing is left.
+    doubtful, half: with a p of that test below the first, a model that explains less than the second share is no explanation.
+    share: explained share from which one, two, three effects are named although something is left.
+    moves: smallest RMS by which a second, a third effect must move the predictions, as a share of the gap's.
+    clears: where something is left beside a larger model, it must have fallen to this share of what was left before.
+    most: effects in one model. beam, near: fits to which a further effect is added, if within this share of what the best explains.
+    tries: effects that are tried beside each.
     """
 
     first: float = 0.05

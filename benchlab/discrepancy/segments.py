@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,13 +20,15 @@ BLUNT = 0.15
 """A stop shorter than this share of the ramps beside it is a blunt turn."""
 
 MOST_PIECES = 200
+"""A run with more is no ramps and holds; it is taken as a whole (chosen)."""
 
 
 @dataclass(frozen=True)
 class Segment:
     """Points first to last (inclusive) of a run. direction: loading, unloading, hold or rest (a hold without pressure); all without a time.
 
-    cycle: from 1, grows with each loading from rest or after an unloading. rate_MPa_s: mean, NaN in a hold. low, high: MPa.
+    cycle: from 1, grows with each loading from rest or after an unloading. rate_MPa_s: mean, positive, NaN in a hold.
+    start_MPa, end_MPa: medians of three readings about the ends.
     """
 
     first: int
@@ -53,7 +56,7 @@ def segments_of(time_s: FloatArray, pressure_MPa: FloatArray) -> list[Segment]:
         return [Segment(0, len(time_s) - 1, "all", 1, np.nan, *ends, 0.0)]
     noise = _noise(pressure_MPa)
     corners = _corners(time_s, pressure_MPa, max(TOLERANCE * span, 4 * noise))
-    pieces = [(a, b, _direction(time_s, pressure_MPa, a, b, span)) for a, b in zip(corners[:-1], corners[1:])]
+    pieces = [(a, b, _direction(time_s, pressure_MPa, a, b, span)) for a, b in pairwise(corners)]
     merged: list[tuple[int, int, str]] = []
     for first, last, direction in pieces:
         if merged and merged[-1][2] == direction:
