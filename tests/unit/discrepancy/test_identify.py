@@ -1,0 +1,38 @@
+import numpy as np
+import pytest
+
+from benchlab.discrepancy.identify import Identified, identify
+from tests.unit.discrepancy.drawn import active, few, problem
+
+
+def found_in(*actives, also_deg: float = 0.0) -> Identified:  # type: ignore[no-untyped-def]
+    made = problem(3, actives, also_deg=also_deg)
+    return identify(made, few(), np.random.default_rng(1))
+
+
+def test_where_nothing_is_hidden_nothing_is_named() -> None:
+    found = found_in()
+    assert (found.verdict, found.best.actives) == ("agree", ())
+
+
+@pytest.mark.parametrize("hidden", [active("friction", half_width_deg=4), active("softening")], ids=lambda a: a.name)
+def test_one_effect_is_named(hidden) -> None:  # type: ignore[no-untyped-def]
+    found = found_in(hidden)
+    assert (found.verdict, found.best.names) == ("named", (hidden.name,))
+    assert found.share > 0.9 and found.p_left > 0.01
+
+
+def test_two_that_cannot_be_told_apart_at_one_length_are_both_in_the_set() -> None:
+    found = found_in(active("end_caps", cap_mm=6))
+    misfit = {one.names: one.misfit for one in found.rivals}
+    assert found.verdict == "ambiguous" and {("end_caps",), ("camera_scale",)} <= set(misfit)
+    assert misfit["end_caps",] == pytest.approx(misfit["camera_scale",], abs=0.1)
+
+
+def test_a_wiggle_that_no_effect_makes_is_not_named() -> None:
+    assert found_in(also_deg=3.0).verdict == "unexplained"
+
+
+def test_two_effects_are_both_found() -> None:
+    found = found_in(active("friction", half_width_deg=4), active("pressure_offset", offset_MPa=0.01))
+    assert set(found.best.names) == {"friction", "pressure_offset"}
