@@ -92,7 +92,8 @@ def foreign_base(
 ) -> Base:
     """Simulated curves of another engine, with the volume they lack and the knobs of the shell cell's own designs of the same name.
 
-    A design that is not in `designs`, or not in the cell, keeps its curves alone: no knob, no length. Tables of one pressure are as good.
+    A design that is not in `designs`, or not in the cell, keeps its curves alone: no knob, no length. A table of one pressure is drawn out
+    to a curve of the cell's course through its value, so that what a change of pressure does is known as well as the cell knows it.
     """
     found = {name: _with_cell(table, designs.get(name), _cell_of(name, cell)) for name, table in curves.items()}
     lent = [name for name in found if found[name].knobs]
@@ -206,9 +207,20 @@ def _cell_of(name: str, cell: Base | None) -> DesignBase | None:
     return None if cell is None else cell.designs.get(name)
 
 
+def _along_cell(table: DesignBase, cell: DesignBase) -> DesignBase:
+    """A table of one pressure, drawn out to a curve of the cell's course through its value."""
+    grid = cell.pressure_MPa
+    known = {name: value for name, value in table.curves.items() if name in cell.curves}
+    there = {name: float(np.interp(table.pressure_MPa[0], grid, cell.curves[name])) for name in known}
+    drawn = {name: cell.curves[name] * (value[0] / there[name]) for name, value in known.items() if there[name] != 0}
+    return replace(table, pressure_MPa=grid, curves=drawn) if len(drawn) == len(table.curves) else table
+
+
 def _with_cell(table: DesignBase, shape: ShellDesign | None, cell: DesignBase | None) -> DesignBase:
     if shape is None or cell is None:
         return replace(table, shape=shape)
+    if len(table.pressure_MPa) == 1:
+        table = _along_cell(table, cell)
 
     def at(row: FloatArray) -> FloatArray:
         return np.interp(table.pressure_MPa, cell.pressure_MPa, row)
