@@ -151,7 +151,8 @@ def explain_loop(
         tell(f"round {number}: explaining")
         explanation = explainer([*(told.round.table for told in rounds), one.table], known, limits)
         rounds.append(Told(one, explanation))
-        ended, settled = _end(explanation, number, settings, clock() - began)
+        done = tuple(told.round.experiment for told in rounds)
+        ended, settled = _end(explanation, done, settings, clock() - began)
         loop = Loop(tuple(rounds), ended, settled, lab.about, lab.origin)
         _write(settings.out / RECORD, {"settings": begun, "ended": ended, "rounds": [_told(told) for told in rounds]})
         if ended:
@@ -161,7 +162,9 @@ def explain_loop(
     raise AssertionError("the last round ends the loop")
 
 
-def _end(explanation: Explanation, number: int, settings: LoopSettings, spent_s: float) -> tuple[str, bool]:
+def _end(
+    explanation: Explanation, done: tuple[Experiment, ...], settings: LoopSettings, spent_s: float
+) -> tuple[str, bool]:
     """Why there is no further round, "" where there is one; and whether that is an answer."""
     following = explanation.next_experiment
     if explanation.verdict in SETTLED:
@@ -169,10 +172,12 @@ def _end(explanation: Explanation, number: int, settings: LoopSettings, spent_s:
     if following is None or following.experiment is None:
         why = "no experiment was proposed" if following is None else following.cannot
         return why or "no experiment was proposed", True
-    if number >= settings.rounds:
+    if len(done) >= settings.rounds:
         return f"the budget of {settings.rounds} rounds is spent; next would be: {following.experiment.what}", False
     if spent_s > 60 * settings.minutes:
         return f"the budget of {settings.minutes:g} min is spent; next would be: {following.experiment.what}", False
+    if following.experiment in done:
+        return f"{following.experiment.what} was run and did not separate them: more samples would", True
     return "", False
 
 

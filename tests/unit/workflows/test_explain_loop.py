@@ -27,6 +27,7 @@ from tests.unit.discrepancy.scenes import base
 from tests.unit.workflows.explanations import explanation
 
 CYCLE = Experiment("cycle", "one cycle", (Triangle(0, 0.3, 0.1),))
+SLOW = Experiment("slow", "one slow cycle", (Triangle(0, 0.3, 0.05),))
 SHORT = Experiment("cycle_short", "one cycle, on shorter samples", (Triangle(0, 0.3, 0.1),), length_ratio=0.5)
 TURNED = Experiment("turned", "one cycle, turned", (Triangle(0, 0.3, 0.1),), mountings_deg=(0.0, 90.0), rest_s=30)
 
@@ -93,9 +94,16 @@ def test_ambiguous_without_an_experiment_ends_with_the_reason(tmp_path: Path) ->
 
 
 def test_the_budget_of_rounds_ends_it_without_an_answer(tmp_path: Path) -> None:
-    found = loop(tmp_path, Told(*[explanation("ambiguous", CYCLE)] * 3), rounds=3)
+    told = [explanation("ambiguous", one) for one in (SLOW, TURNED, CYCLE)]
+    found = loop(tmp_path, Told(*told), rounds=3)
     assert len(found.rounds) == 3 and not found.settled
     assert found.ended == "the budget of 3 rounds is spent; next would be: one cycle"
+
+
+def test_what_was_run_in_vain_is_not_run_again(tmp_path: Path) -> None:
+    found = loop(tmp_path, Told(*[explanation("ambiguous", CYCLE)] * 3), rounds=5)
+    assert len(found.rounds) == 2 and found.settled
+    assert found.ended == "one cycle was run and did not separate them: more samples would"
 
 
 def test_the_budget_of_time_ends_it_after_the_round_that_spent_it(tmp_path: Path) -> None:
