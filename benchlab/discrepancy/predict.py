@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from benchlab.discrepancy.base import KNOBS
-from benchlab.discrepancy.effects.effect import Active, At
+from benchlab.discrepancy.effects.effect import Active, At, Effect
 from benchlab.discrepancy.scene import Scene
 from benchlab.units import FloatArray
 
@@ -18,7 +18,28 @@ def predict(
     Effects that the base has already come first.
     Effects at one place act in the order given. Moduli of several effects multiply, other knobs add up.
     """
-    actives = (*scene.base.given, *actives)
+    pressure, places = _inside((*scene.base.given, *actives), scene)
+    knobs = _knobs(places)
+    found: dict[str, FloatArray] = {}
+    if "volume_mL" in quantities:
+        found["volume_mL"] = scene.curve("volume_mL", pressure, knobs)
+    if "force_N" in quantities:
+        found["force_N"] = scene.curve("force_N", pressure, knobs)
+        for effect, at in places:
+            found["force_N"] = effect.force(found["force_N"], at)
+    if {"angle_deg", "flex_V"} & set(quantities):
+        true = scene.curve("angle_deg", pressure, knobs)
+        for effect, at in places:
+            true = effect.angle(true, at)
+        found["angle_deg"] = found["flex_V"] = true
+        for effect, at in places:
+            found["angle_deg"] = effect.camera(found["angle_deg"], at)
+            found["flex_V"] = effect.flex(found["flex_V"], at)
+    return {name: found[name] for name in quantities}
+
+
+def _inside(actives: Sequence[Active], scene: Scene) -> tuple[FloatArray, list[tuple[Effect, At]]]:
+    """The pressure that bends, and each effect with where it is asked from there on."""
     pressure = scene.pressure_MPa
     for active in actives:
         pressure = active.effect.gauge(pressure, At(scene, active.values, active.form, pressure, pressure))
@@ -27,32 +48,16 @@ def predict(
     inside = pressure
     for active in actives:
         pressure = active.effect.load(pressure, At(scene, active.values, active.form, inside, pressure))
-    places = [(active.effect, At(scene, active.values, active.form, inside, pressure)) for active in actives]
+    return pressure, [(active.effect, At(scene, active.values, active.form, inside, pressure)) for active in actives]
+
+
+def _knobs(places: Sequence[tuple[Effect, At]]) -> dict[str, FloatArray | float]:
+    """The settings that the effects give together."""
     knobs: dict[str, FloatArray | float] = {}
     for effect, at in places:
         for name, setting in effect.knobs(at).items():
-            multiplies = KNOBS[name][0] == 1.0
-            knobs[name] = (
-                setting if name not in knobs else knobs[name] * setting if multiplies else knobs[name] + setting
-            )
-    found: dict[str, FloatArray] = {}
-    if "volume_mL" in quantities:
-        found["volume_mL"] = scene.curve("volume_mL", pressure, knobs)
-    if "force_N" in quantities:
-        force = scene.curve("force_N", pressure, knobs)
-        for effect, at in places:
-            force = effect.force(force, at)
-        found["force_N"] = force
-    if {"angle_deg", "flex_V"} & set(quantities):
-        angle = scene.curve("angle_deg", pressure, knobs)
-        for effect, at in places:
-            angle = effect.angle(angle, at)
-        if "flex_V" in quantities:
-            felt = angle
-            for effect, at in places:
-                felt = effect.flex(felt, at)
-            found["flex_V"] = felt
-        for effect, at in places:
-            angle = effect.camera(angle, at)
-        found["angle_deg"] = angle
-    return {name: found[name] for name in quantities}
+            if name not in knobs:
+                knobs[name] = setting
+            else:
+                knobs[name] = knobs[name] * setting if KNOBS[name][0] == 1.0 else knobs[name] + setting
+    return knobs
