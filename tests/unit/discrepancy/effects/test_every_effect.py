@@ -63,7 +63,7 @@ def scene_for(effect: Effect, points: int = 1) -> Scene:
 
 @cache
 def _scene(kind: str, points: int) -> Scene:
-    return scene(designs=3, samples=1, on=base(3, kind=kind), start_s=0.0, points=points)
+    return scene(designs=3, samples=1, on=base(3, kind=kind), start_s=0.0, points=points, orientation_deg=30.0)
 
 
 def given(effect: Effect, form: str, on: Scene, values: Mapping[str, float]) -> dict[str, np.ndarray]:

@@ -114,7 +114,7 @@ def test_a_table_of_one_pressure_shows_nothing_in_time(name: str) -> None:
 
 @pytest.mark.parametrize("name", STATIC)
 def test_a_table_of_one_pressure_shows_what_is_static(name: str) -> None:
-    assert EFFECTS[name].cannot_show(scene(("still",), 5)) == ""
+    assert EFFECTS[name].cannot_show(scene(("still",), 5, orientation_deg=0.0)) == ""
 
 
 @pytest.mark.parametrize("name", [*TIMED, *LOOPS])
