@@ -316,8 +316,8 @@ def test_cases_are_drawn_whatever_their_layout() -> None:
 
 
 def test_nothing_here_sees_the_identifier_or_the_twins_effects() -> None:
-    """Neither by name nor through a module of benchlab that imports them."""
-    for path in BLIND.rglob("*.py"):
+    """Neither by name nor through a module of benchlab that imports them; but for the test that asks the identifier."""
+    for path in set(BLIND.rglob("*.py")) - {BLIND / "test_subset.py"}:
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             names = [a.name for a in node.names] if isinstance(node, ast.Import) else []
             names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []

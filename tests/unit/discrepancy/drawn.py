@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -88,10 +89,19 @@ def problem(seed: int, actives: Sequence[Active] = (), **how: object) -> Problem
     return prepared(drawn(seed, actives, **how), on or base(how.get("designs", 3)))[0]  # type: ignore[arg-type]
 
 
+TRUE = active("camera_scale", factor=1.08)
+
+
+@cache
+def studies(number: int = 60) -> list[Problem]:
+    """Cheap studies of two designs in which TRUE is hidden."""
+    return [problem(100 + seed, [TRUE], designs=2, protocol=("slow",)) for seed in range(number)]
+
+
 def _moved(made, shift):  # type: ignore[no-untyped-def]
     from dataclasses import replace
 
     return replace(made, pressure_MPa=np.maximum(made.pressure_MPa + shift, 0.0))
 
 
-__all__ = ["EFFECTS", "FEW", "KINDS", "NO_SCATTER", "Scattered", "active", "drawn", "few", "problem"]
+__all__ = ["EFFECTS", "FEW", "KINDS", "NO_SCATTER", "TRUE", "Scattered", "active", "drawn", "few", "problem", "studies"]

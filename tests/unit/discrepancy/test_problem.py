@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from benchlab.discrepancy.problem import off
-from tests.unit.discrepancy.drawn import problem
+from benchlab.discrepancy.problem import Problem, off
+from tests.unit.discrepancy.drawn import active, problem
 
 
 def test_whitening_makes_the_covariance_of_a_sample_one() -> None:
@@ -47,3 +47,58 @@ def test_means_over_samples_and_their_error_are_the_direct_ones() -> None:
     sd = np.concatenate([np.sqrt(np.diag(c)) for c in made.scatter.covariance])
     assert made.error_of_means == pytest.approx(np.sqrt(np.mean(sd**2 / 4)), rel=1e-9)
     assert replace(made, features=made.features.only(made.features.sample > 0)).samples == made.samples - 1
+
+
+def test_drawn_scatter_is_larger_or_smaller_as_its_estimate_is_uncertain() -> None:
+    made = problem(1, designs=2, protocol=("slow",))
+    made.__dict__["systematic"] = np.zeros(len(made.features.features))
+    noise = made.noise(np.random.default_rng(5), 2000)
+    size = np.mean(noise**2, axis=1)  # of C independent cells: f/χ²_f, but for their own 2/C
+    cells = noise.shape[1]
+    assert stats.kstest(made.freedom / size, lambda x: stats.chi2.cdf(x, made.freedom)).pvalue > 0.01
+    usual = stats.f(cells, made.freedom)  # the ratio of two means of squares
+    assert stats.kstest(size, usual.cdf).pvalue > 0.01
+    assert np.mean(size) == pytest.approx(made.freedom / (made.freedom - 2), rel=0.1)
+
+
+def dense(made: Problem, scatter: float = 1.0) -> np.ndarray:
+    """(C, C): covariance of the whitened cells, from the whole matrix: `scatter` times that between samples, and the systematic error."""
+    features = made.features
+    covariance = np.zeros((len(features.value), len(features.value)))
+    for sample, design in enumerate(features.sample_design):
+        mine = np.flatnonzero(features.sample == sample)
+        place = np.searchsorted(made.scatter.features_of[design], features.feature[mine])
+        covariance[np.ix_(mine, mine)] = scatter * made.scatter.covariance[design][np.ix_(place, place)]
+    same = features.feature[:, None] == features.feature[None, :]
+    covariance += same * made.systematic[features.feature] ** 2
+    whiten = made.whiten(np.eye(len(features.value)))
+    return np.asarray(whiten @ covariance @ whiten.T)
+
+
+def test_errors_of_the_scores_are_those_of_the_whole_covariance() -> None:
+    made = problem(1, [active("camera_scale", factor=1.3)], designs=2, protocol=("slow",))
+    random = np.random.default_rng(6)
+    directions = np.column_stack([made.base, random.standard_normal((len(made.base), 3))])
+    whole = np.sqrt(np.einsum("ck,cd,dk->k", directions, dense(made), directions))
+    noise = random.standard_normal((5, len(made.base)))
+    assert made.largest_t_of_noise(directions, noise) == pytest.approx((noise @ directions / whole).max(axis=1))
+    meat = made.scatter_meat(directions) + made.systematic_meat(directions)
+    assert meat == pytest.approx(directions.T @ dense(made) @ directions)
+
+
+def test_drawn_noise_has_the_scatter_and_the_systematic_error_that_all_samples_share() -> None:
+    made = problem(1, [active("camera_scale", factor=1.3)], designs=2, samples=8, protocol=("up",))
+    directions = np.column_stack([made.base, np.random.default_rng(6).standard_normal((len(made.base), 3))])
+    scores = made.noise(np.random.default_rng(7), 6000) @ directions
+    expected = directions.T @ dense(made, made.freedom / (made.freedom - 2)) @ directions
+    without = directions.T @ dense(made, 0.0) @ directions
+    assert np.var(scores, axis=0) == pytest.approx(np.diag(expected), rel=0.1)
+    assert without[0, 0] > 0.3 * expected[0, 0]  # along the base it is a good part
+
+
+def test_the_systematic_error_is_a_tenth_of_a_gap_and_next_to_none_without() -> None:
+    made = problem(3, [active("camera_scale", factor=1.3)], designs=2, protocol=("slow",))
+    base_deg = made.mean_over_samples(made.cells(()))
+    assert made.systematic == pytest.approx(0.1 * (1 - 1 / 1.3) * np.sqrt(np.mean(base_deg**2)), rel=0.02)
+    alike = replace(made, features=replace(made.features, value=made.cells(())))
+    assert alike.systematic == pytest.approx(4e-4 * base_deg.max(), rel=1e-6)
