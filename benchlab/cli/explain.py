@@ -33,7 +33,7 @@ OF_LOOP = {
     "--simulation",
     type=FILE,
     metavar="FILE",
-    help="Simulated curves of any engine: design, pressure_MPa, angle_deg[, volume_mL, force_N].",
+    help="Simulated curves of any engine: design, pressure_MPa, angle_deg or blocked_force_N or both[, volume_mL].",
 )
 @click.option(
     "--model",

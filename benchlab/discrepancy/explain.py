@@ -192,7 +192,7 @@ def _curves(
         ),
         direction=np.array([row.direction for row in rows]),
         cycle=np.array([row.cycle for row in rows]),
-        rate_MPa_s=np.array([row.rate_MPa_s for row in rows]),
+        rate_MPa_s=np.array([kinds[row.kind].told_rate(row.rate_MPa_s) for row in rows]),
         pressure_MPa=np.array([row.pressure_MPa for row in rows]),
         time_s=np.array([row.time_s for row in rows]),
         measured=mean,

@@ -80,7 +80,8 @@ class Gap:
 
 @dataclass(frozen=True)
 class HeldOut:
-    """Left out of the fit, and predicted: kind is sample, design or rate; what: which one. rmse of its features, and the floor of its samples."""
+    """Left out of the fit, and predicted. kind: sample, design or rate; what: which one. before, after: rmse of its features;
+    noise_floor: of its samples."""
 
     kind: str
     what: str
@@ -93,7 +94,8 @@ class HeldOut:
 class Tried:
     """One candidate in the table of rivals. names: of its effects. misfit: −2 log L against the base alone (negative is better).
 
-    p_enough: of the test that nothing in the vocabulary is missing beside it; in_set: not told apart from the best. reason: why it is out, in words.
+    p_enough: of the test that nothing in the vocabulary is missing beside it; in_set: not told apart from the best.
+    reason: why it is out, in words.
     """
 
     names: tuple[str, ...]
@@ -109,7 +111,7 @@ class Tried:
 class Curves:
     """The features that were compared, (F,) each, for pictures and tables: a bin of pressure (in a hold: of time) of a kind of run.
 
-    kind: words for the kind of run ("0.35 MPa at 0.12 MPa/s"). rate_MPa_s: NaN in a hold. measured: mean over samples; sd: between samples
+    kind: words for the kind of run ("to 0.35 MPa at 0.12 MPa/s"). rate_MPa_s: as it is told of the kind, NaN in a hold. measured: mean over samples; sd: between samples
     (of a table of means: the table's own), NaN where it is not known; n: samples; simulated: base alone; explained: with the effects
     (= simulated where none); p: simultaneous, of measured ≠ simulated, NaN where scatter is not known.
     """
@@ -132,8 +134,9 @@ class Curves:
 
 @dataclass(frozen=True)
 class NextExperiment:
-    """protocol: path of the file, or its text before it is written. separates: rivals told apart, as words. expected_sd: smallest expected distance of two rivals
-    in standard deviations, NaN where it was not chosen for a pair. setup: what to do beside the protocol (mounting, second length), empty where
+    """protocol: path of the file, or its text before it is written. separates: rivals told apart, as words. expected_sd: smallest
+    expected distance of two rivals in standard deviations, NaN where it was not chosen for a pair. setup: what to do beside the protocol
+    (mounting, second length), empty where
     nothing. cannot: why there is none. experiment: the same as data, None where there is none."""
 
     protocol: str

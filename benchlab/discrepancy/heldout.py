@@ -33,13 +33,22 @@ def _folds(problem: Problem) -> Iterator[tuple[str, str, NDArray[np.bool_]]]:
         mine = np.flatnonzero(features.sample_design == design)
         rank[mine] = np.arange(len(mine)) % FOLDS
     for fold in np.unique(rank):
-        yield "sample", f"fold {fold + 1}", rank[features.sample] == fold
+        mine = [features.sample_names[i].rsplit(" ", 1) for i in np.flatnonzero(rank == fold)]
+        yield "sample", _several(sorted({name for *_, name in mine})), rank[features.sample] == fold
     design_of = np.array([feature.design for feature in features.features])[features.feature]
     kind_of = np.array([feature.kind for feature in features.features])[features.feature]
     for number, name in enumerate(problem.scene.names):
         yield "design", name, design_of == number
     for number, kind in enumerate(features.kinds):
         yield "rate", kind.words, kind_of == number
+
+
+def _several(names: list[str]) -> str:
+    """
+    >>> _several(["s1"]), _several(["a", "b", "c", "d", "e"])
+    ('s1', 'a, b, c and 2 more')
+    """
+    return ", ".join(names[:3]) + f" and {len(names) - 3} more" * (len(names) > 3)
 
 
 def _one(problem: Problem, best: Fit, kind: str, what: str, left: NDArray[np.bool_]) -> HeldOut:

@@ -89,12 +89,13 @@ def _curve(feature: Feature) -> tuple[int, str, int, int, int, str]:
 def _region(problem: Problem, stretch: list[int], gap: FloatArray, p: FloatArray) -> Region:
     features = [problem.features.features[i] for i in stretch]
     first = features[0]
+    rate = problem.features.kinds[first.kind].told_rate(first.rate_MPa_s)
     pressures = [feature.pressure_MPa for feature in features]
     return Region(
         design=problem.scene.names[first.design],
         quantity=first.quantity,
         direction=first.direction,
-        rate_MPa_s=first.rate_MPa_s if np.isfinite(first.rate_MPa_s) else None,
+        rate_MPa_s=rate if np.isfinite(rate) else None,
         cycle=first.cycle,
         pressure_MPa=(float(min(pressures)), float(max(pressures))),
         gap=float(np.mean(gap[stretch])),

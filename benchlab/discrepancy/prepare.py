@@ -194,7 +194,7 @@ def _summary_problem(
             Feature(int(d), 0, 0, table.quantity, 1, "all", i, np.nan, float(p), 0.0, 0.0)
             for i, (d, p) in enumerate(zip(design, pressure))
         ),
-        kinds=(Kind("means", np.nan, float(pressure.max()), 1, 0.0),),
+        kinds=(Kind("means"),),
         sample_names=names,
         sample_design=np.arange(len(names)),
         sample=design,

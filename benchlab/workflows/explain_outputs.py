@@ -68,7 +68,9 @@ def written(
         path = str(outputs.folder / next_name(explanation.next_experiment.experiment))
         explanation = replace(explanation, next_experiment=replace(explanation.next_experiment, protocol=path))
     model = model_of(explanation, chosen, sums, made, outputs.folder)
-    document = explain_document(explanation, effects(), made, sums, plan)
+    there = {one.name for one in chosen.given}
+    lacking = {name: effect for name, effect in effects().items() if name not in there}
+    document = explain_document(explanation, lacking, made, sums, plan)
     beside = [MODEL] * (model is not None) + [Path(path).name for path in [_path(explanation)] if path]
     outputs = replace(outputs, names=names_of(document, beside=beside, numbers=NUMBERS))
     outputs.check(overlay=False, inputs=inputs)

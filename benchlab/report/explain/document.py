@@ -6,8 +6,10 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from benchlab.discrepancy.bank import DRAWS as VERDICT_DRAWS
 from benchlab.discrepancy.effects.effect import Effect
 from benchlab.discrepancy.explanation import Explanation
+from benchlab.discrepancy.locate import DRAWS as PLACES_DRAWS
 from benchlab.errors import counted
 from benchlab.protocol.plan import Plan
 from benchlab.report.document import Block, Document, Section, Tile, Tiles, Words, cut, listed, marked
@@ -41,9 +43,14 @@ NUMBERS = "explain.json"
 
 _READ = (
     ("Gap", "measured less model, of the means of the samples, in bins of pressure (in holds: of time); RMSE: its root mean square."),
-    ("Noise floor", "by how much a sample scatters about the mean of its own design: no model comes nearer to an unseen sample."),
-    ("Ceiling", "the share of the gap that any smooth curve of design, direction and kind of run could explain; the rest is scatter."),
-    ("p", "how often a gap as large comes from the scatter of samples alone; it holds for all places looked at together."),
+    ("Noise floor", "by how much a sample scatters about the mean of its own design,"
+     " an estimate from these samples: a faultless model is expected to come as near to an unseen one, give or take."),
+    ("Explains", "of the misfit (−2 log likelihood) that any model could take away, the share that this one does."),
+    ("Ceiling", "the share of the mean square gap of the means that is no scatter of them: another measure than the one before."),
+    ("p of the verdict", f"how often the scatter of samples alone gives as large a t in any direction of the vocabulary: {VERDICT_DRAWS} "
+                         f"draws of it, so that the smallest p is 1/{VERDICT_DRAWS + 1}."),
+    ("p of places", f"how often it gives as large a gap anywhere, all places looked at together: {PLACES_DRAWS} draws."),
+    ("False names", "the rate is nominal: the rules are calibrated to it on studies in which nothing is hidden (docs/benchmarks)."),
     ("Left", "not to be told from the best explanation by these data. Where several are left, none is known to be the cause."),
     ("Equivalent", "parameters belong to the equation that is shown; another equation of the same effect has other numbers."),
 )  # fmt: skip
@@ -56,14 +63,16 @@ def explain_document(
     inputs: Mapping[str, str] | None = None,
     plan: Plan | None = None,
 ) -> Document:
-    """The whole report. vocabulary: effects by name. provenance: as workflows.provenance.made_by gives it. inputs: SHA-256 by file read.
+    """The whole report. vocabulary: effects by name, without those that the model has already.
+
+    provenance: as workflows.provenance.made_by gives it. inputs: SHA-256 by file read.
     plan: of the next experiment, where it is known."""
     mark = mark_of(explanation)
     sections = [
         Section("Verdict", tuple(_verdict(explanation))),
         Section("Where", tuple(_where(explanation))),
         Section("What", tuple(named_blocks(explanation, vocabulary))),
-        Section("Rivals", tuple(_rivals(explanation))),
+        Section("Rivals", tuple(_rivals(explanation, vocabulary))),
         Section("The gap before and after", tuple(_gap(explanation))),
         Section("What the fit had not seen", tuple(_held_out(explanation))),
         Section("What is left", tuple(_left(explanation))),
@@ -73,9 +82,8 @@ def explain_document(
         Section("How to read this", (listed(_READ, NUMBERS),)),
         provenance_section((("Simulation", explanation.base),), provenance, inputs or {}, NUMBERS),
     ]
-    title = f"Explained: {verdict_title(explanation)}"
     return Document(
-        title=cut(f"{mark.capitalize()}: {title}" if mark else title, 140),
+        title=cut(f"{mark.capitalize() or 'Explained'}: {verdict_title(explanation)}", 140),
         statement=SIMULATED * explanation.simulated,
         facts=_facts(explanation, provenance),
         sections=tuple(
@@ -122,16 +130,18 @@ def _tiles(explanation: Explanation) -> Iterator[Tile]:
         yield Tile(quantity.amount(gap.noise_floor), floor_words(explanation)[0], what)
     if explanation.effects:
         share = sum(found.share_explained for found in explanation.effects)
-        ceiling = f"; any model: at most {percent(gap.ceiling)}" if math.isfinite(gap.ceiling) else ""
+        ceiling = f"; {percent(gap.ceiling)} of the mean square gap is no scatter" if math.isfinite(gap.ceiling) else ""
         yield Tile(
-            percent(share), "of the gap explained", f"{set_words([f.name for f in explanation.effects])}{ceiling}"
+            percent(share),
+            "of what any model could explain",
+            f"{set_words([f.name for f in explanation.effects])}{ceiling}",
         )
     if explanation.verdict == "ambiguous":
         yield Tile(str(len(explanation.rivals)), "explanations left", "not to be told apart by these data")
 
 
 def _where(explanation: Explanation) -> Iterator[Block]:
-    sentences = told_regions(explanation.where, explanation.curves, most=12)
+    sentences = told_regions(explanation.where, explanation.curves)
     if explanation.only_described:
         yield Words(
             "Stretches of pressure with a gap of one sign. How samples scatter is not known, so that none has a p."
@@ -139,18 +149,19 @@ def _where(explanation: Explanation) -> Iterator[Block]:
     elif not sentences:
         yield Words("Nowhere do measured and simulated differ by more than the scatter of the samples explains.")
     for sentence in sentences:
-        yield Words(f"{sentence[:1].upper() if sentence.startswith('all ') else sentence[:1]}{sentence[1:]}.")
+        begins = sentence.startswith(("all ", "told "))
+        yield Words(f"{sentence[:1].upper() if begins else sentence[:1]}{sentence[1:]}.")
     yield map_pictures(explanation)
     if explanation.where:
         yield regions_table(explanation)
 
 
-def _rivals(explanation: Explanation) -> Iterator[Block]:
+def _rivals(explanation: Explanation, vocabulary: Mapping[str, Effect]) -> Iterator[Block]:
     if explanation.verdict == "ambiguous":
         rivals = "; ".join(set_words(names) for names in explanation.rivals)
         yield Words(f"Not told apart by these data: {rivals}.", "lead")
     if explanation.tried:
-        yield rivals_table(explanation)
+        yield rivals_table(explanation, vocabulary)
 
 
 def _gap(explanation: Explanation) -> Iterator[Block]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -34,22 +35,30 @@ _ROW_IN, _FOOT_IN, _BAR_IN = 0.2, 0.52, 0.62
 
 
 @dataclass(frozen=True)
-class GapMap:
-    """designs, details: of the rows (direction, rate, cycle, where they vary). pressure_MPa: (C + 1,) edges of the columns.
+class Row:
+    """The cells of a row side by side, C of them. edges_MPa: (C + 1,); middle_MPa, gap: means of the cell's features; sure: where any p of
+    them is below ALPHA."""
 
-    gap: (rows, C), NaN where nothing was measured; sure: where any p of the cell is below ALPHA. hidden: designs that are not there.
-    """
+    edges_MPa: FloatArray
+    middle_MPa: FloatArray
+    gap: FloatArray
+    sure: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class GapMap:
+    """designs, details: of the rows (direction, rate, cycle, where they vary). rows: what each has. hidden: designs that are not there."""
 
     designs: tuple[str, ...]
     details: tuple[str, ...]
-    pressure_MPa: FloatArray
-    gap: FloatArray
-    sure: NDArray[np.bool_]
+    rows: tuple[Row, ...]
     hidden: int = 0
 
 
 def gap_map(curves: Curves, quantity: str, model: Model = "simulated", most: int = MOST_ROWS) -> GapMap:
-    """Mean gap of the features of each cell. Where rows were more than `most`, cycles and then rates are averaged over (directions never:
+    """Mean gap of the features of each cell; a row has its own cells.
+
+    Where rows were more than `most`, cycles and then rates are averaged over (directions never:
     their gaps may cancel); where they still are, the designs with the largest gaps of the simulation are kept."""
     kept = np.flatnonzero(curves.quantity == quantity)
     level, rows = next((found for found in _rows_by_level(curves, kept) if len(found[1]) <= most), ((), {}))
@@ -57,19 +66,17 @@ def gap_map(curves: Curves, quantity: str, model: Model = "simulated", most: int
         level, rows = list(_rows_by_level(curves, kept))[-1]
     designs = _kept_designs(curves, rows, most)
     order = [key for key in _ordered(rows, list(dict.fromkeys(curves.design[kept].tolist()))) if key[0] in designs]
-    edges = _edges(curves.pressure_MPa[kept])
-    cells = [_row(curves, np.array(rows[key]), edges, model) for key in order]
+    parts = [_cells(curves, np.array(rows[key]), _together(curves, kept), model) for key in order]
+    usual = [np.diff(part.middle_MPa).min() for part in parts if len(part.middle_MPa) > 1]
+    width = float(np.median(usual)) if usual else 1.0
     varied = [len({key[1 + i] for key in order}) > 1 for i in range(len(level))]
     details = [
         ", ".join(filter(None, (_told(part) for part, several in zip(key[1:], varied) if several))) for key in order
     ]
-    gap, sure = (np.array([cell[part] for cell in cells]) for part in (0, 1))
     return GapMap(
         tuple(key[0] for key in order),
         tuple(details),
-        edges,
-        gap,
-        sure,
+        tuple(replace(part, edges_MPa=_edges(part.middle_MPa, width)) for part in parts),
         len(dict.fromkeys(curves.design[kept].tolist())) - len(designs),
     )
 
@@ -96,17 +103,53 @@ def _ordered(rows: Iterable[Any], designs: list[str]) -> list[Any]:
     return sorted(rows, key=lambda key: (designs.index(key[0]), *(_rank(part) for part in key[1:])))
 
 
-def _row(
-    curves: Curves, index: NDArray[np.int64], edges: FloatArray, model: Model
-) -> tuple[FloatArray, NDArray[np.bool_]]:
-    """Mean gap and whether it is sure, (C,) each."""
-    column = np.clip(np.searchsorted(edges, curves.pressure_MPa[index], side="right") - 1, 0, len(edges) - 2)
-    difference = (curves.measured - getattr(curves, model))[index]
-    gap, sure = np.full(len(edges) - 1, np.nan), np.zeros(len(edges) - 1, dtype=bool)
-    for each in np.unique(column[np.isfinite(difference)]):
-        here = (column == each) & np.isfinite(difference)
-        gap[each], sure[each] = difference[here].mean(), (curves.p[index][here] < ALPHA).any()
-    return gap, sure
+def _together(curves: Curves, kept: NDArray[np.int64]) -> float:
+    """Pressures that are not further apart are one cell: a part of all pressures, as holds scatter about theirs."""
+    known = curves.pressure_MPa[kept]
+    return float(np.ptp(known[np.isfinite(known)])) / MOST_COLUMNS if np.isfinite(known).any() else 0.0
+
+
+def _cells(curves: Curves, index: NDArray[np.int64], together_MPa: float, model: Model) -> Row:
+    """A row without its edges. Where it has several kinds of run, directions or cycles, their bins that lie half a step apart are one."""
+    gap = (curves.measured - getattr(curves, model))[index]
+    kept = np.isfinite(gap) & np.isfinite(curves.pressure_MPa[index])
+    index, gap = index[kept], gap[kept]
+    pressure = curves.pressure_MPa[index]
+    steps = [np.median(np.diff(np.sort(pressure[mine]))) for mine in _runs_alike(curves, index) if mine.sum() > 1]
+    together_MPa = max([together_MPa, *(float(step) / 2 for step in steps)])
+    order = np.argsort(pressure, kind="stable")
+    groups: list[list[int]] = []
+    for i in order.tolist():
+        if groups and pressure[i] - pressure[groups[-1][0]] <= together_MPa:
+            groups[-1].append(i)
+        else:
+            groups.append([i])
+    return Row(
+        np.empty(0),
+        np.array([pressure[group].mean() for group in groups]),
+        np.array([gap[group].mean() for group in groups]),
+        np.array([bool((curves.p[index[group]] < ALPHA).any()) for group in groups], dtype=bool),
+    )
+
+
+def _runs_alike(curves: Curves, index: NDArray[np.int64]) -> Iterator[NDArray[np.bool_]]:
+    """Of each kind of run, direction and cycle, which they are."""
+    names = list(zip(curves.kind[index].tolist(), curves.direction[index].tolist(), curves.cycle[index].tolist()))
+    for one in dict.fromkeys(names):
+        yield np.array([name == one for name in names])
+
+
+def _edges(middle_MPa: FloatArray, width_MPa: float) -> FloatArray:
+    """(C + 1,): between the middles, the ends as far out as the next edge is in, yet not below 0; of one alone, as wide as usual.
+
+    >>> _edges(np.array([0.02, 0.06, 0.10]), 0.04).round(3).tolist(), _edges(np.array([0.35]), 0.04).round(3).tolist()
+    ([0.0, 0.04, 0.08, 0.12], [0.33, 0.37])
+    """
+    if len(middle_MPa) < 2:
+        return np.concatenate([middle_MPa - width_MPa / 2, middle_MPa + width_MPa / 2])
+    between = (middle_MPa[1:] + middle_MPa[:-1]) / 2
+    first, last = 2 * middle_MPa[0] - between[0], 2 * middle_MPa[-1] - between[-1]
+    return np.concatenate([[max(first, 0.0) if middle_MPa[0] >= 0 else first], between, [last]])
 
 
 def draw_gap_map(
@@ -126,25 +169,33 @@ def draw_gap_map(
 
 def plot_gap_map(ax: Axes, found: GapMap, limit: float, dots: bool, name_in: float) -> Any:
     """Cells, dots where the gap is sure, a line between designs; returns what the colours belong to."""
-    rows = np.arange(len(found.designs) + 1) - 0.5
-    masked = np.ma.masked_invalid(found.gap)
+    from matplotlib.collections import PolyCollection
+
+    cells = [(at, *pair) for at, row in enumerate(found.rows) for pair in pairwise(row.edges_MPa.tolist())]
+    corners = [[(a, at - 0.5), (b, at - 0.5), (b, at + 0.5), (a, at + 0.5)] for at, a, b in cells]
+    drawn = PolyCollection(corners, cmap="RdBu_r", edgecolors="white", linewidths=0.4)
+    drawn.set_array(np.concatenate([row.gap for row in found.rows]))
+    drawn.set_clim(-limit, limit)
     ax.set_facecolor("#eeeeee")
-    drawn = ax.pcolormesh(
-        found.pressure_MPa, rows, masked, cmap="RdBu_r", vmin=-limit, vmax=limit, edgecolors="white", linewidth=0.4
-    )
-    middles = (found.pressure_MPa[1:] + found.pressure_MPa[:-1]) / 2
+    ax.add_collection(drawn)
+    middles = np.array([(a + b) / 2 for _, a, b in cells])
     if dots:
-        row, column = np.nonzero(found.sure)
-        ax.plot(middles[column], row, "o", color="black", markersize=2.6, markeredgecolor="white", markeredgewidth=0.5)
+        sure = np.concatenate([row.sure for row in found.rows])
+        rows = np.array([at for at, _, _ in cells])
+        ax.plot(
+            middles[sure], rows[sure], "o", color="black", markersize=2.6, markeredgecolor="white", markeredgewidth=0.5
+        )
+    ends = (min((a for _, a, _ in cells), default=0.0), max((b for _, _, b in cells), default=1.0))
+    ax.set_xlim(*ends)
     starts = [i for i, design in enumerate(found.designs) if i == 0 or found.designs[i - 1] != design]
-    ax.hlines(np.array(starts[1:]) - 0.5, *found.pressure_MPa[[0, -1]], color=GREY, linewidth=0.8)
+    ax.hlines(np.array(starts[1:]) - 0.5, *ends, color=GREY, linewidth=0.8)
     ax.set_yticks(range(len(found.designs)), _row_names(found, starts, name_in), **TEXT)
     ax.tick_params(axis="y", length=0)
     ax.set_ylim(len(found.designs) - 0.5, -0.5)
     dress(ax, "pressure (MPa)", None)
     ax.grid(False)
-    if len(middles) == 1:
-        ax.set_xticks(middles, [f"{middles[0]:.3g}"])
+    if len(alone := {round(float(middle), 6) for middle in middles}) == 1:
+        ax.set_xticks([*alone], [f"{alone.pop():.3g}"])
     return drawn
 
 
@@ -197,15 +248,3 @@ def _told(part: Any) -> str:
     if isinstance(part, str):
         return cut(part, 16)
     return f"cycle {part}" if isinstance(part, int) else f"{part:g} MPa/s" if part else ""
-
-
-def _edges(pressure_MPa: FloatArray) -> FloatArray:
-    """Edges of columns: between the pressures where there are few, else of even columns."""
-    known = np.unique(np.round(pressure_MPa[np.isfinite(pressure_MPa)], 4))
-    if len(known) < 2:
-        middle = float(known[0]) if len(known) else 0.0
-        return np.array([middle - 0.5, middle + 0.5])
-    if len(known) > MOST_COLUMNS:
-        return np.linspace(known[0], known[-1], MOST_COLUMNS + 1)
-    between = (known[1:] + known[:-1]) / 2
-    return np.concatenate([[2 * known[0] - between[0]], between, [2 * known[-1] - between[-1]]])

@@ -13,7 +13,7 @@ from benchlab.report.document import Block, Words, cut
 from benchlab.report.explain.quantity import effect_words
 from benchlab.report.explain.regions import and_words
 from benchlab.report.explain.tables import parameters_table
-from benchlab.report.explain.words import percent
+from benchlab.report.explain.words import explains_words
 
 _WIDE = re.compile(r"\s{2,}")
 _BLANK = re.compile(r"\n\s*\n")
@@ -30,17 +30,18 @@ def named_blocks(explanation: Explanation, vocabulary: Mapping[str, Effect]) -> 
     if explanation.verdict == "unexplained":
         yield Words("This comes nearest, but does not explain the gap: it is not named as a cause.", "warning")
     for found in explanation.effects:
-        yield from _effect(found, vocabulary.get(found.name))
+        yield from _effect(found, vocabulary.get(found.name), len(explanation.effects) == 1)
     yield parameters_table(explanation)
     if any(found.form not in ("", "plain") or found.other_forms for found in explanation.effects):
         yield Words("Where other forms fit alike, the parameters are equivalent ones: they reproduce the curves, and a constant of the "
                     "material that enters another equation will differ from them.", "small")  # fmt: skip
 
 
-def _effect(found: Found, effect: Effect | None) -> Iterator[Block]:
+def _effect(found: Found, effect: Effect | None, alone: bool) -> Iterator[Block]:
+    """alone: all its forms were fitted."""
     name = effect_words(found.name)
     head = f"{name[:1].upper()}{name[1:]}"
-    share = f"It explains {percent(found.share_explained)} of the gap."
+    share = f"It {explains_words(found)}."
     if effect is None:
         yield Words(share, "lead", f"{head}.")
         return
@@ -54,6 +55,9 @@ def _effect(found: Found, effect: Effect | None) -> Iterator[Block]:
         if found.other_forms
         else ""
     )
+    worse = [cut(form, 30) for form in effect.forms if form not in (found.form, *found.other_forms)]
+    if worse and alone:
+        forms += f"; {and_words(worse)} {'fits' if len(worse) == 1 else 'fit'} worse by 4 in misfit (−2 log likelihood) at least"
     yield Words(f"{cut(found.form, 30)}{forms}.", head="Form.")
     yield Words(f"{cut(effect.looks_like, 400)}. Shown by: {cut(effect.shown_by, 400)}.", head="Looks like:")
 

@@ -106,7 +106,7 @@ def changes_picture(explanation: Explanation, rows: Sequence[Change], name: str,
     figure = draw_changes(rows, main_quantity(explanation.curves), names_of(explanation)[1], title)
     caption = "Diamonds: root mean square gap of the simulation. Dots: after."
     if any(math.isfinite(row.noise_floor) for row in rows):
-        caption += " Strokes: noise floor, as near as a faultless model comes."
+        caption += " Strokes: noise floor, as near as a faultless model is expected to come."
     return Pictures((_panel(explanation, figure, name, title),), caption + _off(rows, MOST_ROWS))
 
 

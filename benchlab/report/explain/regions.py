@@ -17,6 +17,9 @@ from benchlab.stats.wording import p_text
 P_FLOOR = 1e-4
 """Below it a probability is only said to be below: they come from some thousands of drawn studies."""
 
+NEAR_LIMIT = (0.04, 0.06)
+"""Between these a probability is told in three digits, so that it is seen on which side of 5 % it lies."""
+
 ALIKE = 0.5
 """Share of two intervals' union that their overlap must have for them to be told as one."""
 
@@ -27,7 +30,8 @@ DIRECTIONS = {"loading": "loading", "unloading": "unloading", "hold": "in holds"
 class Stretch:
     """Regions told as one. directions, rates_MPa_s, cycles: None where it is all that were measured.
 
-    pressure_MPa: what all its regions have in common. gap: the smallest and the largest of them; p: the largest.
+    pressure_MPa: what all its regions have in common. gap: the smallest and the largest of them; p: the largest. loose: not every
+    combination has a region, and pressures are what all of them span.
     """
 
     designs: tuple[str, ...]
@@ -38,6 +42,7 @@ class Stretch:
     pressure_MPa: tuple[float, float]
     gap: tuple[float, float]
     p: float
+    loose: bool = False
 
     @property
     def size(self) -> float:
@@ -61,14 +66,19 @@ def merged(regions: Iterable[Region], curves: Curves) -> list[Stretch]:
 
 
 def told_regions(regions: Sequence[Region], curves: Curves, most: int = 6) -> list[str]:
-    """Sentences, the largest gap first, and how many more there are.
+    """Sentences, the largest gap first; where they are more than `most`, one for each quantity, direction and sign.
 
     Told in the unit of the quantity; the number is the gap averaged over the interval, of merged regions from the smallest to the largest.
     A p that is not known is not told.
     """
-    found = merged(regions, curves)
-    left = len(found) - most
-    return [told(one, curves) for one in found[:most]] + [f"and {counted(left, 'more region')}"] * (left > 0)
+    regions = list(regions)
+    found, more = merged(regions, curves), []
+    if len(found) > most:
+        found, more = (
+            _summed(regions, curves),
+            [f"told together: {counted(len(regions), 'region')}, each in the report's table and in --json"],
+        )
+    return [*(told(one, curves) for one in found), *more]
 
 
 def told(one: Stretch, curves: Curves) -> str:
@@ -77,7 +87,8 @@ def told(one: Stretch, curves: Curves) -> str:
     low, high = sorted(map(abs, one.gap))
     subject = subject_words(one.designs, sorted(set(curves.design[curves.quantity == one.quantity].tolist())))
     head = quantity.differs(subject, quantity.span(low, high), one.gap[1] <= 0, len(one.designs) > 1)
-    place = f"{head} {pressure_words(one.pressure_MPa)}"
+    pressures = pressure_words(one.pressure_MPa)
+    place = f"{head} {pressures.replace('from', 'within', 1) if one.loose else pressures}"
     probability = "" if np.isnan(one.p) else f"; p {_p(one.p, one.gap[0] != one.gap[1])}"
     return f"{', '.join(filter(None, (place, *_circumstances(one, curves))))}{probability}"
 
@@ -116,8 +127,16 @@ def rate_key(rate_MPa_s: float | None) -> float | None:
     return None if rate_MPa_s is None or not np.isfinite(rate_MPa_s) else float(f"{rate_MPa_s:.2g}")
 
 
+def p_told(p: float) -> str:
+    """
+    >>> p_told(0.0231), p_told(0.04975), p_told(0.0)
+    ('0.023', '0.050', '< 0.0001')
+    """
+    return f"{p:.3f}" if NEAR_LIMIT[0] <= p < NEAR_LIMIT[1] else p_text(p, P_FLOOR)
+
+
 def _p(p: float, several: bool) -> str:
-    text = p_text(p, P_FLOOR)
+    text = p_told(p)
     return text if text.startswith("<") else f"{'≤' if several else '='} {text}"
 
 
@@ -135,6 +154,36 @@ def _circumstances(one: Stretch, curves: Curves) -> Iterable[str]:
         first, last = min(cycles), max(cycles)
         whole = last - first + 1 == len(cycles) and len(cycles) > 2
         yield f"cycle{'s' * (len(cycles) > 1)} " + (f"{first} to {last}" if whole else and_words([*map(str, cycles)]))
+
+
+def _summed(regions: Sequence[Region], curves: Curves) -> list[Stretch]:
+    """A stretch for each quantity, direction and sign: all designs, rates and cycles that have a region, and all pressures."""
+    groups: dict[Any, list[Region]] = {}
+    for region in regions:
+        groups.setdefault((region.quantity, region.direction, region.gap > 0), []).append(region)
+    order = list(dict.fromkeys(curves.quantity.tolist()))
+    found = [_collapsed(_around(group), curves) for group in groups.values()]
+    return sorted(found, key=lambda one: (order.index(one.quantity), -one.size, one.designs))
+
+
+def _around(group: Sequence[Region]) -> Stretch:
+    """All regions of a quantity, a direction and a sign as one."""
+    first = group[0]
+    rates = {rate for region in group if (rate := rate_key(region.rate_MPa_s)) is not None}
+    cycles = {region.cycle for region in group if region.cycle is not None}
+    lows, highs = zip(*(region.pressure_MPa for region in group))
+    gaps = [region.gap for region in group]
+    return Stretch(
+        tuple(sorted({region.design for region in group})),
+        first.quantity,
+        None if first.direction == "all" else (first.direction,),
+        tuple(sorted(rates)) or None,
+        tuple(sorted(cycles)) or None,
+        (min(lows), max(highs)),
+        (min(gaps), max(gaps)),
+        max(region.p for region in group),
+        loose=len(group) > 1,
+    )
 
 
 def _single(region: Region) -> Stretch:

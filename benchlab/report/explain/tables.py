@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
 from benchlab.discrepancy.explanation import Curves, Explanation, Tried
-from benchlab.report.document import Cell, Column, Table
+from benchlab.report.document import NONE, Cell, Column, Table
 from benchlab.report.explain.quantity import effect_words, main_quantity, quantity_of
-from benchlab.report.explain.regions import P_FLOOR, pressure_words
+from benchlab.report.explain.regions import and_words, p_told, pressure_words
 from benchlab.report.explain.words import parameter_text, percent, set_words
-from benchlab.report.rounding import count, digits, number, probability, words
+from benchlab.report.rounding import count, digits, number, words
 from benchlab.units import FloatArray
 
 
@@ -28,7 +28,7 @@ def regions_table(explanation: Explanation) -> Table:
         (
             words(one.design, 40), words(one.quantity, 30), words(one.direction, 20), digits(one.rate_MPa_s, 2), count(one.cycle),
             digits(one.pressure_MPa[0]), digits(one.pressure_MPa[1]), Cell(None, pressure_words(one.pressure_MPa)),
-            Cell(one.gap, quantity_of(explanation.curves, one.quantity).amount(one.gap, signed=True)), probability(_finite(one.p), P_FLOOR),
+            Cell(one.gap, quantity_of(explanation.curves, one.quantity).amount(one.gap, signed=True)), _p(one.p),
         )
         for one in explanation.where
     )  # fmt: skip
@@ -37,7 +37,9 @@ def regions_table(explanation: Explanation) -> Table:
         if explanation.only_described
         else "p holds for all regions looked at together."
     )
-    note = f"The gap is averaged over the interval. {holds} An empty cell: over all of them; without a rate: held, or without a time."
+    over_all = " Without a cycle: over all of them." * any(one.cycle is None for one in explanation.where)
+    held = " Without a rate: held, or without a time." * any(one.rate_MPa_s is None for one in explanation.where)
+    note = f"The gap is averaged over the interval. {holds}{over_all}{held}"
     return Table("regions", "Where measured and simulated differ.", columns, rows, note, by="design", most=15)
 
 
@@ -58,8 +60,8 @@ def parameters_table(explanation: Explanation) -> Table:
     return Table("parameters", "Parameters of what was named.", columns, tuple(rows), by="effect")
 
 
-def rivals_table(explanation: Explanation) -> Table:
-    """All candidates, the best fit first."""
+def rivals_table(explanation: Explanation, vocabulary: Iterable[str] = ()) -> Table:
+    """Candidates that came near, and the names of those in the vocabulary that did not."""
     columns = (
         Column("effects", "candidate", False), Column("form", "form", False), Column("misfit", "misfit"),
         Column("share_explained", "explains"), Column("p_enough", "p, enough"), Column("in_set", "left", False),
@@ -70,7 +72,10 @@ def rivals_table(explanation: Explanation) -> Table:
         "Misfit: −2 log likelihood against the simulation alone; lower is better, and a difference below 2 tells nothing apart. "
         "p, enough: of the test that nothing is missing beside it. Left: not told apart from the best."
     )
-    caption = "All candidates, those that are left first, then the best fit first."
+    seen = {name for one in explanation.tried for name in one.names} | set(explanation.judged_not)
+    if out := [effect_words(name) for name in vocabulary if name not in seen]:
+        note += f" Screened out, as their curves explain too little of the gap, or none of what the means show: {and_words(out)}."
+    caption = "Candidates that came near, those that are left first, then the best fit first."
     return Table("rivals", caption, columns, tuple(map(_tried, ranked)), note, most=30)
 
 
@@ -78,7 +83,7 @@ def _tried(one: Tried) -> tuple[Cell, ...]:
     return (
         Cell(" + ".join(one.names), set_words(one.names)), words(one.form, 40), number(one.misfit, 1),
         Cell(_finite(one.share_explained), percent(one.share_explained)),
-        probability(_finite(one.p_enough), P_FLOOR), Cell("yes" if one.in_set else "no", "yes" if one.in_set else ""),
+        _p(one.p_enough), Cell("yes" if one.in_set else "no", "yes" if one.in_set else ""),
         words(one.reason, 120),
     )  # fmt: skip
 
@@ -153,6 +158,10 @@ def curves_table(explanation: Explanation) -> Table:
 
 def rms(values: FloatArray) -> float:
     return float(np.sqrt(np.mean(np.square(values))))
+
+
+def _p(p: float) -> Cell:
+    return Cell(float(p), p_told(p)) if np.isfinite(p) else Cell(None, NONE)
 
 
 def _finite(value: float) -> float | None:

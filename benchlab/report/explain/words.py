@@ -12,9 +12,8 @@ from benchlab.discrepancy.explanation import Estimate, Explanation, Found, Gap, 
 from benchlab.errors import counted, printable
 from benchlab.report.document import cut
 from benchlab.report.explain.quantity import Quantity, effect_words, main_quantity
-from benchlab.report.explain.regions import P_FLOOR, and_words, told_regions
+from benchlab.report.explain.regions import and_words, p_told, told_regions
 from benchlab.report.rounding import decimals_of, digits, number
-from benchlab.stats.wording import p_equals
 
 SIMULATED = "Simulated data: what is called measured here came from a twin or was drawn; nothing was measured."
 
@@ -59,7 +58,8 @@ def verdict_title(explanation: Explanation) -> str:
     if explanation.verdict == "agree":
         return "simulation and measurement agree"
     if explanation.verdict == "named":
-        return f"missing: {set_words([found.name for found in explanation.effects])}"
+        verb = "is" if len(explanation.effects) == 1 else "are"
+        return f"{set_words([found.name for found in explanation.effects])} {verb} missing"
     if explanation.verdict == "ambiguous":
         return f"{len(explanation.rivals)} explanations are left"
     if explanation.only_described:
@@ -121,7 +121,10 @@ def floor_words(explanation: Explanation) -> tuple[str, str]:
     """What the noise floor is called, and what it is: of a table of means, their standard error."""
     if unseen(explanation) == "designs":
         return "standard error", "of the means, which a faultless model misses by as much"
-    return "noise floor", "as near as a faultless model comes to a held-out sample"
+    return (
+        "noise floor",
+        "a faultless model is expected to come as near to a held-out sample, estimated from the samples' own scatter",
+    )
 
 
 def _shrinks(explanation: Explanation, quantity: Quantity) -> str:
@@ -145,8 +148,10 @@ def _shrinks(explanation: Explanation, quantity: Quantity) -> str:
 
 
 def _p_gap(explanation: Explanation) -> str:
-    known = math.isfinite(explanation.p_gap)
-    return p_equals(explanation.p_gap, P_FLOOR) if known else "p not known"
+    if not math.isfinite(explanation.p_gap):
+        return "p not known"
+    text = p_told(explanation.p_gap)
+    return f"p {text}" if text.startswith("<") else f"p = {text}"
 
 
 def set_words(names: Sequence[str]) -> str:
@@ -161,12 +166,16 @@ def set_words(names: Sequence[str]) -> str:
 def effect_lines(found: Found) -> Iterator[str]:
     """What was named, its share, and its parameters with 95 % intervals."""
     form = f", form {cut(found.form, 30)}" if found.form not in ("", "plain") else ""
-    yield f"{effect_words(found.name)}{form}: explains {percent(found.share_explained)} of the gap"
+    yield f"{effect_words(found.name)}{form}: {explains_words(found)}"
     for name, estimate in found.parameters.items():
         yield f"  {parameter_words(name, estimate)}"
     if found.other_forms:
         forms = and_words([cut(name, 30) for name in found.other_forms])
         yield f"  other forms of its equation fit alike ({forms}): read the numbers as those of an equivalent effect"
+
+
+def explains_words(found: Found) -> str:
+    return f"explains {percent(found.share_explained)} of what any model could explain"
 
 
 def parameter_words(name: str, estimate: Estimate) -> str:
@@ -210,7 +219,7 @@ def gap_lines(explanation: Explanation) -> Iterator[str]:
         name, what = floor_words(explanation)
         yield f"{name} {quantity.amount(gap.noise_floor)}: {what}"
     if math.isfinite(gap.ceiling):
-        yield f"ceiling {percent(gap.ceiling)}: the share of the gap that any model could explain"
+        yield f"ceiling {percent(gap.ceiling)}: the share of the mean square gap that is no scatter"
     if math.isfinite(explanation.false_naming):
         yield false_naming_words(explanation)
 

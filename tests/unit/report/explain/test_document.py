@@ -77,7 +77,12 @@ def test_tiles_are_the_numbers_of_the_explanation() -> None:
 
 def test_physics_equation_look_and_test_of_what_was_named() -> None:
     what = said(plain(), "What")
-    for text in (Friction.physics, Friction.looks_like, Friction.shown_by, "It explains 83 % of the gap."):
+    for text in (
+        Friction.physics,
+        Friction.looks_like,
+        Friction.shown_by,
+        "It explains 83 % of what any model could explain.",
+    ):
         assert text in what
     assert "h(p) = h·(1 − g + g·p/0.35 MPa)" in what and "equivalent ones" in what
 
@@ -89,7 +94,7 @@ def test_every_effect_has_an_equation() -> None:
 def test_an_effect_of_a_user_that_is_not_installed_is_told_without_physics() -> None:
     found = replace(explanations.FRICTION, name="snap_through")
     what = said(explanations.document(small(effects=(found,))), "What")
-    assert what.startswith("Snap through. It explains 83 % of the gap.")
+    assert what.startswith("Snap through. It explains 83 % of what any model could explain.")
 
 
 def test_the_best_of_several_is_not_called_the_cause() -> None:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from benchlab.discrepancy.explanation import Curves
 from benchlab.report.explain.change_figure import Change, draw_changes
 from benchlab.report.explain.curves_figure import (
     EXPLAINED,
@@ -46,16 +48,47 @@ def test_cells_are_measured_less_simulated_and_dots_where_it_is_sure() -> None:
         "unloading, 0.12 MPa/s",
     )
     shares = np.arange(1, 9) / 8
-    np.testing.assert_allclose(found.gap[0], -5.0 * shares)
-    np.testing.assert_allclose(found.gap[8], 2.0 * shares)
-    assert np.isnan(found.gap[2, :-1]).all() and found.gap[2, -1] == pytest.approx(-5 * np.mean(1 - shares / 2))
-    assert found.sure[0].tolist() == (shares > 0.5).tolist()
-    middles = (found.pressure_MPa[1:] + found.pressure_MPa[:-1]) / 2
-    np.testing.assert_allclose(middles, 0.35 * shares, atol=1e-4)
+    up, down, held = (found.rows[place] for place in (0, 8, 2))
+    np.testing.assert_allclose(up.gap, -5.0 * shares)
+    np.testing.assert_allclose(down.gap, 2.0 * shares)
+    assert up.sure.tolist() == (shares > 0.5).tolist()
+    np.testing.assert_allclose(up.middle_MPa, 0.35 * shares)
+    np.testing.assert_allclose(up.edges_MPa, 0.35 * (np.arange(9) + 0.5) / 8)
+    np.testing.assert_allclose(held.gap, [-5 * np.mean(1 - shares / 2)])
+    np.testing.assert_allclose(held.edges_MPa, [0.35 * (1 - 1 / 16), 0.35 * (1 + 1 / 16)])
+
+
+def shifted(by_MPa: float) -> Curves:
+    """The slow runs' bins lie a little lower than those of the fast ones."""
+    slow = np.where(FOUND.rate_MPa_s == 0.01, by_MPa, 0.0)
+    return replace(FOUND, pressure_MPa=FOUND.pressure_MPa - slow)
+
+
+def test_each_kind_of_run_has_its_own_cells_without_holes() -> None:
+    found = gap_map(shifted(0.011), "angle_deg")
+    slow, fast = found.rows[:2]
+    assert len(slow.gap) == len(fast.gap) == 8
+    np.testing.assert_allclose(slow.edges_MPa[1:], fast.edges_MPa[1:] - 0.011)
+    figure = draw_gap_map(found, ANGLE, "a title", 5.0)
+    drawn = figure.axes[0].collections[0]
+    boxes = [path.get_extents() for path in drawn.get_paths()[:16]]
+    for row in (boxes[:8], boxes[8:]):
+        assert all(one.x1 == pytest.approx(other.x0) for one, other in pairwise(row))
+    np.testing.assert_allclose(drawn.get_array()[:8], slow.gap)
+    dots = figure.axes[0].lines[0]
+    inside = [(y == 0 and boxes[4].x0 < x < boxes[4].x1) for x, y in zip(dots.get_xdata(), dots.get_ydata())]
+    assert sum(inside) == 1
+
+
+def test_where_rates_share_a_row_bins_of_the_same_place_are_one() -> None:
+    found = gap_map(shifted(0.011), "angle_deg", most=6)
+    assert [len(row.gap) for row in found.rows] == [8, 1, 8] * 2
+    np.testing.assert_allclose(found.rows[0].gap, -5.0 * np.arange(1, 9) / 8)
 
 
 def test_what_is_left_is_measured_less_explained() -> None:
-    np.testing.assert_allclose(gap_map(FOUND, "angle_deg", "explained").gap, 0.15 * gap_map(FOUND, "angle_deg").gap)
+    for left, gap in zip(gap_map(FOUND, "angle_deg", "explained").rows, gap_map(FOUND, "angle_deg").rows):
+        np.testing.assert_allclose(left.gap, 0.15 * gap.gap)
 
 
 def test_too_many_rows_lose_cycles_then_rates_never_directions_then_designs() -> None:
@@ -63,13 +96,14 @@ def test_too_many_rows_lose_cycles_then_rates_never_directions_then_designs() ->
     found = gap_map(many, "angle_deg")
     assert len(found.designs) <= MOST_ROWS and set(found.details) == {"loading", "hold", "unloading"}
     assert found.hidden == 10 and "d29" in found.designs and "d0" not in found.designs
-    assert found.gap[0].max() < 0 < found.gap[2].min()
+    assert found.rows[0].gap.max() < 0 < found.rows[2].gap.min()
     fewer = gap_map(many, "angle_deg", most=15 * 30)
     assert len(fewer.designs) == 15 * 30 and fewer.hidden == 0 and "loading, 0.01 MPa/s, cycle 2" in fewer.details
 
 
 def test_many_pressures_share_columns() -> None:
-    assert gap_map(explanations.curves(bins=50), "angle_deg").gap.shape[1] == MOST_COLUMNS
+    row = gap_map(explanations.curves(bins=200), "angle_deg").rows[0]
+    assert len(row.gap) <= MOST_COLUMNS and (np.diff(row.middle_MPa) > 0.35 / MOST_COLUMNS * 0.99).all()
 
 
 def test_colours_end_at_the_largest_gap_but_scatter_looks_pale() -> None:
@@ -152,7 +186,7 @@ def test_the_overview_of_each_verdict(kind: str) -> None:
         warnings.simplefilter("error")
         figure = draw_overview(found)
         said = texts(figure)
-    title = {"agree": "Simulation and measurement agree", "named": "Missing: friction", "ambiguous": "3 explanations are left",
+    title = {"agree": "Simulation and measurement agree", "named": "Friction is missing", "ambiguous": "3 explanations are left",
              "unexplained": "A gap that no known effect explains"}[found.verdict]  # fmt: skip
     title = "A gap, described only" if kind == "one sample" else title
     assert title in said and ("simulated data" in said) == found.simulated

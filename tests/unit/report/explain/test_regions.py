@@ -90,10 +90,17 @@ def test_the_published_table_has_no_direction_rate_or_cycle() -> None:
     ]
 
 
-def test_many_are_counted() -> None:
+def test_many_are_told_by_direction_and_sign() -> None:
     given = [replace(ONE, pressure_MPa=(i / 100, (i + 1) / 100), gap=-1.0 - i) for i in range(0, 30, 2)]
     told = told_regions(given, FOUND, most=3)
-    assert len(told) == 4 and told[0].startswith("a bends 29.0°") and told[-1] == "and 12 more regions"
+    assert told == [
+        "a bends 1.0 to 29.0° less than simulated within 0.00 to 0.29 MPa, loading, at 0.01 MPa/s, cycle 1; p ≤ 0.009",
+        "told together: 15 regions, each in the report's table and in --json",
+    ]
+    back = [replace(one, direction="unloading", gap=-one.gap, design="b") for one in given]
+    first, second, last = told_regions([*given, *back, replace(ONE, gap=40.0)], FOUND, most=3)[:3]
+    assert first.startswith("a bends 40.0° more than simulated from 0.20 to 0.35 MPa, loading")
+    assert second.startswith("a bends 1.0 to 29.0° less") and last.startswith("b bends 1.0 to 29.0° more")
 
 
 def test_forces_and_columns_of_users() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -80,6 +80,22 @@ def test_rivals_that_are_left_stand_first_then_the_best_fit() -> None:
     assert [row[5].value for row in rows] == ["yes", "no", "no"] and rows[1][6].text.startswith(
         "the loop does not widen"
     )
+
+
+def test_those_that_were_not_fitted_are_named_but_not_those_that_cannot_be_judged() -> None:
+    found = explanations.explanation()
+    words = ["friction", "temperature", "gravity", "dead_pressure"]
+    assert rivals_table(found, words).note.endswith("the means show: gravity and dead pressure.")
+    assert "Screened out" not in rivals_table(found, words[:2]).note
+
+
+def test_only_cells_that_are_empty_are_explained() -> None:
+    region = explanations.explanation().where[0]
+    full = replace(region, rate_MPa_s=0.1, cycle=1, p=0.04975)
+    table = regions_table(explanations.explanation(where=(full,)))
+    assert "Without" not in table.note and table.rows[0][-1].text == "0.050"
+    bare = regions_table(explanations.explanation(where=(replace(full, rate_MPa_s=None, cycle=None),)))
+    assert "Without a cycle" in bare.note and "Without a rate" in bare.note
 
 
 def test_held_out_over_its_floor() -> None:
