@@ -84,9 +84,18 @@ def stages() -> Iterator[Teller]:
         task = bar.add_task("", total=None)
 
         def report(words: str, done: int, total: int | None) -> None:
-            bar.update(task, description=Text(printable(words)).markup, completed=done, total=total)
+            text = printable(words) + _of(done, total)
+            bar.update(task, description=Text(text).markup, completed=done, total=total)
 
         yield report
+
+
+def _of(done: int, total: int | None) -> str:
+    """
+    >>> _of(2, 5), _of(0, None)
+    (' (2 of 5)', '')
+    """
+    return f" ({done} of {total})" if total else ""
 
 
 class _PlainStages:
@@ -98,7 +107,7 @@ class _PlainStages:
     def __call__(self, words: str, done: int, total: int | None) -> None:
         if words != self.words:
             self.words, self.plain = words, _Plain(printable(words))
-            print(f"{self.plain.label} …", file=sys.stderr, flush=True)
+            print(f"{self.plain.label}{_of(done, total)} …", file=sys.stderr, flush=True)
         self.plain(done, total)
 
 
@@ -112,6 +121,6 @@ class _Plain:
         now = time.monotonic()
         if now - self.last >= PLAIN_EVERY_S:
             self.last = now
-            known = total is not None and total > done
+            known = total is not None and total > done > 0
             left = f" of {total}, {(now - self.started) * (total - done) / done:.0f} s left" if total and known else ""
             print(f"{self.label}: {done}{left}", file=sys.stderr, flush=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -69,7 +70,7 @@ class ExplainedFiles:
 def explain(paths: Sequence[Path], settings: ExplainSettings, tell: Tell = _silent) -> ExplainedFiles:
     """Explain what the files hold, and write report, numbers, model and next protocol into `out`, all or none.
 
-    Raises UsageError and InputError; then nothing was written.
+    Raises UsageError, InputError and BatchError; then nothing was written.
     """
     settings.choice.check()
     if settings.seed < 0:
@@ -78,9 +79,16 @@ def explain(paths: Sequence[Path], settings: ExplainSettings, tell: Tell = _sile
     if settings.out is None:
         return _explained(paths, settings, tell, None)
     outputs = ExplainOutputs(settings.out, "explain", settings.overwrite)
-    outputs.check(overlay=False, inputs=read)
-    with outputs.locked():
-        return _explained(paths, settings, tell, outputs)
+    fresh = not settings.out.exists()
+    try:
+        outputs.check(overlay=False, inputs=read)
+        with outputs.locked():
+            return _explained(paths, settings, tell, outputs)
+    except BaseException:
+        if fresh:
+            with contextlib.suppress(OSError):  # not empty, or never made
+                settings.out.rmdir()
+        raise
 
 
 def _explained(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -11,7 +12,7 @@ import numpy as np
 
 from benchlab.actuator import ShellDesign
 from benchlab.discrepancy.base import KNOBS, Base, DesignBase, Knob
-from benchlab.errors import InputError, UsageError
+from benchlab.errors import BatchError, InputError, UsageError
 from benchlab.simulation.actuator_response import Fixture
 from benchlab.simulation.layup import Layup
 from benchlab.simulation.response import check_pressures
@@ -181,25 +182,38 @@ def _simulate(
     progress: Progress | None,
     cache: Path | None,
 ) -> dict[str, str]:
-    """Simulate those not yet `found`, wide windows first, which take longest; returns those that cannot be, with the reason."""
+    """Simulate those not yet `found`, wide windows first, which take longest; returns those that cannot be, with the reason.
+
+    Raises BatchError where workers died.
+    """
     left = sorted(((n, d) for n, d in designs.items() if n not in found), key=lambda each: -each[1].window_width_mm)
     alike: dict[str, list[tuple[str, ShellDesign]]] = {}
     for each in left:
         alike.setdefault(key_of(each[1], wanted), []).append(each)
     missing: dict[str, str] = {}
     work = functools.partial(solve_design, wanted=wanted)
-    for outcome in run_batch([same[0] for same in alike.values()], work, min(jobs, max(len(alike), 1))):
-        first, design = outcome.item
-        same = alike[key_of(design, wanted)]
-        if outcome.result is not None:
-            solved = outcome.result["solved"]
-            found.update((name, solved.called(name, shape)) for name, shape in same)
-            if cache and (note := write_cached(cache, design, wanted, solved)):
-                notes.append(note)
-        elif outcome.error is not None:
-            missing.update((name, str(outcome.error).replace(first, name)) for name, _ in same)
-        if progress:
-            progress(len(found) + len(missing), len(designs))
+    dead: list[str] = []
+    outcomes = run_batch([same[0] for same in alike.values()], work, min(jobs, max(len(alike), 1)), disposable=True)
+    if progress and left:
+        progress(len(found), len(designs))
+    with contextlib.closing(outcomes):
+        for outcome in outcomes:
+            first, design = outcome.item
+            same = alike[key_of(design, wanted)]
+            if outcome.result is not None:
+                solved = outcome.result["solved"]
+                found.update((name, solved.called(name, shape)) for name, shape in same)
+                if cache and (note := write_cached(cache, design, wanted, solved)):
+                    notes.append(note)
+            elif isinstance(outcome.error, BatchError):
+                dead += [name for name, _ in same]
+            elif outcome.error is not None:
+                missing.update((name, str(outcome.error).replace(first, name)) for name, _ in same)
+            if progress:
+                progress(len(found) + len(missing), len(designs))
+    if dead:
+        what = f"{', '.join(dead)} not simulated: the worker process died, and again when tried alone"
+        raise BatchError(what, hint="is there enough memory? give fewer --jobs; what is done is kept")
     return missing
 
 
