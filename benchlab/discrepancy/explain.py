@@ -81,6 +81,7 @@ def explain(
         source=measured.source,
         simulated=isinstance(measured, Measured) and measured.simulated,
         samples=_samples(problem) if summary else problem.samples,
+        left_out=_left_out(measured, base, problem),
     )
     return Explained(explanation, problem, found)
 
@@ -91,6 +92,13 @@ def _cannot_show(effect: Effect, problem: Problem) -> str:
     if not set(effect.seen_in) & set(quantities):
         return f"it does not show in {' and '.join(quantities)}"
     return effect.cannot_show(problem.scene) or ("" if problem.scatter.freedom > 0 else NOT_JUDGED)
+
+
+def _left_out(measured: Measured | Summary, base: Base, problem: Problem) -> dict[str, str]:
+    """Measured designs that are not compared, with the reason."""
+    names = dict.fromkeys(measured.design) if isinstance(measured, Summary) else measured.designs
+    reasons = {**dict.fromkeys(base.designs, "no value where there is a simulated curve"), **base.missing}
+    return {name: reasons.get(name, "no simulated curve") for name in names if name not in problem.scene.names}
 
 
 def _samples(problem: Problem) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -111,9 +111,10 @@ class Tried:
 class Curves:
     """The features that were compared, (F,) each, for pictures and tables: a bin of pressure (in a hold: of time) of a kind of run.
 
-    kind: words for the kind of run ("to 0.35 MPa at 0.12 MPa/s"). rate_MPa_s: as it is told of the kind, NaN in a hold. measured: mean over samples; sd: between samples
-    (of a table of means: the table's own), NaN where it is not known; n: samples; simulated: base alone; explained: with the effects
-    (= simulated where none); p: simultaneous, of measured ≠ simulated, NaN where scatter is not known.
+    kind: words for the kind of run ("to 0.35 MPa at 0.12 MPa/s"). rate_MPa_s: as it is told of the kind, NaN in a hold. measured: mean
+    over samples; sd: between samples (of a table of means: the table's own), NaN where it is not known; n: samples; simulated: base
+    alone; explained: with the effects (= simulated where none); p: simultaneous, of measured ≠ simulated, NaN where scatter is not
+    known.
     """
 
     design: NDArray[np.str_]
@@ -153,6 +154,7 @@ class Explanation:
     rules are calibrated. samples: behind all means. Both probabilities are NaN where the data could only be described.
 
     judged_not: effects that these data cannot show, with the reason. remainder: what is left and what it depends on, in words.
+    left_out: measured designs that were not compared, with the reason.
     """
 
     verdict: str
@@ -173,6 +175,7 @@ class Explanation:
     simulated: bool
     samples: int
     next_experiment: NextExperiment | None = None
+    left_out: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def only_described(self) -> bool:

@@ -17,6 +17,9 @@ from benchlab.report.rounding import decimals_of, digits, number
 
 SIMULATED = "Simulated data: what is called measured here came from a twin or was drawn; nothing was measured."
 
+CLEARLY_SD = 10
+"""Beyond this distance its number says nothing more."""
+
 UNWRITTEN = "next.yaml"
 """What a protocol is called that has no file yet."""
 
@@ -35,7 +38,12 @@ def told(explanation: Explanation) -> list[str]:
 
 def _parts(explanation: Explanation) -> Iterator[tuple[str, Iterable[str]]]:
     yield "Where", told_regions(explanation.where, explanation.curves)
-    yield "What", [line for found in explanation.effects for line in effect_lines(found)]
+    what = (
+        "What"
+        if explanation.verdict != "ambiguous"
+        else "What (best fit of those that are left, not known to be the cause)"
+    )
+    yield what, [line for found in explanation.effects for line in effect_lines(found)]
     if explanation.verdict == "ambiguous":
         yield "Rivals", [set_words(names) for names in explanation.rivals]
     yield "Gap", gap_lines(explanation)
@@ -48,9 +56,18 @@ def _parts(explanation: Explanation) -> Iterator[tuple[str, Iterable[str]]]:
 def verdict_words(explanation: Explanation) -> str:
     """The verdict in a sentence or two, with numbers."""
     quantity, gap = main_quantity(explanation.curves), explanation.gap
-    return {"agree": _agree, "named": _named, "ambiguous": _ambiguous, "unexplained": _unexplained}[
-        explanation.verdict
-    ](explanation, quantity, gap)
+    words = {"agree": _agree, "named": _named, "ambiguous": _ambiguous, "unexplained": _unexplained}
+    return words[explanation.verdict](explanation, quantity, gap) + left_out_words(explanation)
+
+
+def left_out_words(explanation: Explanation) -> str:
+    """A sentence on the measured designs that were not compared, after the verdict; empty where there are none."""
+    left = [f"{cut(name, 40)}, {cut(why, 160)}" for name, why in explanation.left_out.items()]
+    if not left:
+        return ""
+    shown = "; ".join([*left[:5], *[f"{len(left) - 5} more"] * (len(left) > 5)])
+    measured = len(set(explanation.curves.design.tolist())) + len(left)
+    return f" {len(left)} of {measured} measured designs {'is' if len(left) == 1 else 'are'} left out: {shown}."
 
 
 def verdict_title(explanation: Explanation) -> str:
@@ -254,6 +271,8 @@ def next_lines(proposed: NextExperiment | None) -> Iterator[str]:
 def _expected(proposed: NextExperiment) -> str:
     if not math.isfinite(proposed.expected_sd):
         return ""
+    if proposed.expected_sd > CLEARLY_SD:
+        return f", expected to lie clearly apart (more than {CLEARLY_SD} standard deviations)"
     return f", expected to lie {digits(proposed.expected_sd, 2).text} standard deviations apart at least"
 
 

@@ -7,11 +7,13 @@ import pytest
 
 from benchlab.actuator import ShellDesign
 from benchlab.discrepancy.base import DesignBase
-from benchlab.errors import InputError, UsageError
+from benchlab.errors import BatchError, InputError, UsageError
 from benchlab.io.layup_file import read_layup
 from benchlab.simulation.actuator_response import actuator_response
 from benchlab.simulation.laws import Polynomial
 from benchlab.simulation.layup import Layup
+from benchlab.workflows import explain_base
+from benchlab.workflows.batch import Outcome
 from benchlab.workflows.explain_base import cell_base, check_surrogate, foreign_base, surrogate
 from benchlab.workflows.explain_cache import default_cache, key_of, read_cached
 from benchlab.workflows.explain_curves import Wanted
@@ -155,6 +157,16 @@ def test_a_curve_ends_where_the_actuator_bursts():
     assert "film_modulus is known from" in base.warnings[1]
     with pytest.raises(InputError, match=r"has no stable state from 0\.3 MPa on"):
         cell_base({"wide": wide}, soft, [0.0, 0.1, 0.3], forces=False, knobs=())
+
+
+def test_dead_workers_are_no_design_that_cannot_be_simulated(monkeypatch):
+    died = BatchError("its worker process died twice")
+    monkeypatch.setattr(
+        explain_base, "run_batch", lambda items, *_, **__: (Outcome(item, None, died) for item in items)
+    )
+    with pytest.raises(BatchError, match=r"^a not simulated: the worker process died") as told:
+        cell_base({"a": ShellDesign()}, read_layup("from-measured-angles"), PRESSURES, forces=False)
+    assert told.value.exit_code == 4
 
 
 def test_impossible_pressures():

@@ -126,6 +126,24 @@ def test_the_next_experiment_has_its_command_and_a_text_has_no_path() -> None:
     assert "  benchlab run next.yaml --out results" in told(explanations.published())
 
 
+def test_far_apart_is_said_without_a_number() -> None:
+    far = replace(explanations.NEXT, expected_sd=450.0)
+    [line] = [line for line in told(explanations.explanation(next_experiment=far)) if line.startswith("  separates")]
+    assert line.endswith("expected to lie clearly apart (more than 10 standard deviations)")
+
+
+def test_the_best_of_several_is_not_told_as_the_cause() -> None:
+    assert "What (best fit of those that are left, not known to be the cause):" in told(explanations.ambiguous())
+    assert "What:" in told(explanations.explanation())
+
+
+def test_measured_designs_that_are_left_out_stand_in_the_verdict() -> None:
+    plain, one = explanations.explanation(), explanations.explanation(left_out={"Delta": "no simulated curve"})
+    measured = len(set(plain.curves.design.tolist())) + 1
+    added = f" 1 of {measured} measured designs is left out: Delta, no simulated curve."
+    assert verdict_words(one) == verdict_words(plain) + added
+
+
 def test_what_cannot_be_separated_is_said() -> None:
     assert any(
         "cannot be separated on this bench: no protocol within" in line for line in told(explanations.unexplained())
