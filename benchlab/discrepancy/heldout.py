@@ -33,8 +33,8 @@ def _folds(problem: Problem) -> Iterator[tuple[str, str, NDArray[np.bool_]]]:
         mine = np.flatnonzero(features.sample_design == design)
         rank[mine] = np.arange(len(mine)) % FOLDS
     for fold in np.unique(rank):
-        mine = [features.sample_names[i].rsplit(" ", 1) for i in np.flatnonzero(rank == fold)]
-        yield "sample", _several(sorted({name for *_, name in mine})), rank[features.sample] == fold
+        held = [features.sample_names[i].rsplit(" ", 1) for i in np.flatnonzero(rank == fold)]
+        yield "sample", _several(sorted({name for *_, name in held})), rank[features.sample] == fold
     design_of = np.array([feature.design for feature in features.features])[features.feature]
     kind_of = np.array([feature.kind for feature in features.features])[features.feature]
     for number, name in enumerate(problem.scene.names):

@@ -165,7 +165,7 @@ def test_dead_workers_are_no_design_that_cannot_be_simulated(monkeypatch):
         explain_base, "run_batch", lambda items, *_, **__: (Outcome(item, None, died) for item in items)
     )
     with pytest.raises(BatchError, match=r"^a not simulated: the worker process died") as told:
-        cell_base({"a": ShellDesign()}, read_layup("from-measured-angles"), PRESSURES, forces=False)
+        cell_base({"a": ShellDesign(10, 3)}, read_layup("from-measured-angles"), PRESSURES, forces=False)
     assert told.value.exit_code == 4
 
 
