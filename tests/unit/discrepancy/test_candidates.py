@@ -63,3 +63,10 @@ def test_of_each_set_of_names_the_best_is_kept() -> None:
 
     fits = [one(3, "friction"), one(2, "softening", "friction"), one(1, "friction"), one(0, "friction", "softening")]
     assert distinct(fits) == [fits[3], fits[2]]
+
+
+def test_what_its_own_parameters_could_take_up_does_not_speak_against_a_candidate() -> None:
+    made = problem(3, [TRUE], designs=2, protocol=("slow",))
+    one = fit(made, [TRUE])
+    farther = replace(one, model=one.model + 3 * one.tangent[:, 0])
+    assert p_enough(made, replace(one, residual=one.residual + 5 * one.tangent[:, 0]), farther) == (1.0, 0.0)
