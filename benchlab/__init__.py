@@ -30,7 +30,7 @@ Measure:  export of a testing machine -> columns in N, mm, s -> cycles -> blocke
 Compare:  study file -> angle of each cycle of each sample -> ANOVA, pairs, components -> report.
 Drive:    protocol file -> plan -> checks -> runner -> device + journal -> drive file -> picture.
 Predict:  design + layup -> pieces -> laminates on a mesh -> cell -> path of states -> response curves -> files, pictures.
-Explain:  runs of samples + simulated curves -> features -> scatter of the samples -> effects fitted -> verdict -> model file, report, next protocol.
+Explain:  runs of samples + simulated curves -> features -> scatter of samples -> effects fitted -> verdict -> model, report, protocol.
 """
 
 from importlib.metadata import version
