@@ -36,7 +36,9 @@ def unit_jumps(runs: Sequence[Run]) -> Iterator[str]:
         measured = [run for run in designs[design] if quantity in run.values]
         top = np.array([_largest(run, "pressure_MPa") for run in measured])
         alike = (
-            [run for run, near in zip(measured, np.abs(top / np.median(top) - 1) <= ALIKE) if near] if len(top) else []
+            [run for run, near in zip(measured, np.abs(top - np.median(top)) <= ALIKE * np.median(top)) if near]
+            if len(top)
+            else []
         )
         yield from _odd(alike, quantity, [_largest(run, quantity) for run in alike], ALIKE)
 

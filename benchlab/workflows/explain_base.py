@@ -94,7 +94,8 @@ def foreign_base(
     """Simulated curves of another engine, with the volume they lack and the knobs of the shell cell's own designs of the same name.
 
     A design that is not in `designs`, or not in the cell, keeps its curves alone: no knob, no length. A table of one pressure is drawn out
-    to a curve of the cell's course through its value, so that what a change of pressure does is known as well as the cell knows it.
+    to a curve of the cell's course through its value, so that what a change of pressure does is known as well as
+    the cell knows it; without a cell to a straight line from 0.
     """
     found = {name: _with_cell(table, designs.get(name), _cell_of(name, cell)) for name, table in curves.items()}
     lent = [name for name in found if found[name].knobs]
@@ -221,6 +222,14 @@ def _cell_of(name: str, cell: Base | None) -> DesignBase | None:
     return None if cell is None else cell.designs.get(name)
 
 
+def _straight(table: DesignBase) -> DesignBase:
+    """A table of one pressure as a straight line from nothing at 0 MPa: the least that lets a wrong pressure be a rival."""
+    if table.pressure_MPa[0] <= 0 or "volume_mL" in table.curves:
+        return table
+    curves = {name: np.array([0.0, value[0]]) for name, value in table.curves.items()}
+    return replace(table, pressure_MPa=np.array([0.0, table.pressure_MPa[0]]), curves=curves)
+
+
 def _along_cell(table: DesignBase, cell: DesignBase) -> DesignBase:
     """A table of one pressure, drawn out to a curve of the cell's course through its value."""
     grid = cell.pressure_MPa
@@ -232,7 +241,7 @@ def _along_cell(table: DesignBase, cell: DesignBase) -> DesignBase:
 
 def _with_cell(table: DesignBase, shape: ShellDesign | None, cell: DesignBase | None) -> DesignBase:
     if shape is None or cell is None:
-        return replace(table, shape=shape)
+        return replace(_straight(table) if len(table.pressure_MPa) == 1 else table, shape=shape)
     if len(table.pressure_MPa) == 1:
         table = _along_cell(table, cell)
 

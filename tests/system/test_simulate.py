@@ -160,7 +160,7 @@ def test_own_results_are_replaced_and_others_not(benchlab, copied) -> None:
         (["--pressure-MPa", "0,nan"], ["not a number"]),
         (["--cap-mm", "90"], ["caps of 90", "180 mm"]),
         (["--cap-mm=-1"], ["caps of -1"]),
-        (["--lever-arm-mm", "5", "--contact-area-mm2", "3"], ["one of the two"]),
+        (["--lever-arm-mm", "5", "--contact-area-mm2", "3"], ["both given", "give one of them"]),
         (["--lever-arm-mm", "0"], ["lever_arm_mm is 0", "positive"]),
         (["--tip-force-at-deg", "400"], ["400", "350"]),
         (["--material", "nothing"], ["no material is called 'nothing'"]),

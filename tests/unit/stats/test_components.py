@@ -102,7 +102,7 @@ def test_cycles_that_hardly_scatter_beside_samples_that_do() -> None:
     ]
     groups, samples, numbers = zip(*rows)
     within, between = reml_variances(measurements_of(groups, numbers, samples).cycles())
-    assert between == pytest.approx(4.0, rel=1e-3) and within == pytest.approx(1e-10 * 1.5, rel=0.1)
+    assert between == pytest.approx(4.0, rel=5e-3) and within == pytest.approx(1e-10 * 1.5, rel=0.1)
 
 
 @pytest.mark.parametrize("cycles", [(6, 6), (3, 9)])
