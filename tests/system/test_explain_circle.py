@@ -22,6 +22,8 @@ from benchlab.workflows.explain_measured import explain_measured
 from benchlab.workflows.explain_twin import TwinLab
 from tests.unit.discrepancy.scenes import base
 
+pytestmark = pytest.mark.slow
+
 SEED = 11
 PROTOCOL = """\
 title: One cycle
