@@ -3,23 +3,24 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Mapping
 
 import numpy as np
 
-from benchlab.errors import InputError
 from benchlab.stats.groups import mean_of, squares_about
 from benchlab.units import FloatArray
+
+LOG_RATIOS = np.linspace(-40.0, 70.0, 441)
+"""Logarithms of the ratio of the variances among which the likelihood's top is first looked for."""
 
 
 def reml_variances(cycles: Mapping[str, Mapping[str, FloatArray]]) -> tuple[float, float]:
     """(within samples, between samples of a design): a linear mixed model, design fixed, sample random. Cycles must scatter.
 
-    statsmodels' MixedLM, by Nelder and Mead: its gradient methods stop at a singular matrix or short of the top. Where the
-    likelihood falls from the start as the ratio ρ of the variances grows from 0, samples do not differ beyond their cycles; MixedLM cannot
-    reach that end, but there it is known: the variance of all cycles about their design, and 0. The slope at ρ = 0 is from Searle, Casella
-    and McCulloch 1992, Variance Components, 6.6. Raises InputError where MixedLM does not end.
+    The restricted likelihood of both variances is one of their ratio ρ alone (Searle, Casella and McCulloch 1992, Variance Components, 6.6):
+    with w = n/(1 + n·ρ) of each sample and Q(ρ) the squares within samples and Σ w·(mean − that of the design)², the variance within is
+    Q/(N − designs), and −2·log L is (N − designs)·log Q + Σ log(1 + n·ρ) + Σ log(Σ w of a design). Where that rises from ρ = 0 samples do not
+    differ beyond their cycles, and the variance is that of all cycles about their design.
 
     >>> a, b = reml_variances({"a": {"1": np.array([1.0, 3.0]), "2": np.array([7.0, 9.0]), "3": np.array([4.0, 6.0])}})
     >>> round(a, 3), round(b, 3)
@@ -35,22 +36,24 @@ def reml_variances(cycles: Mapping[str, Mapping[str, FloatArray]]) -> tuple[floa
     total = within + math.fsum((n * about**2).tolist())
     df = int(n.sum()) - len(size)
     falls = df * float(((n * about) ** 2).sum()) <= total * (n.sum() - float((np.bincount(design, n**2) / size).sum()))
-    return (total / df, 0.0) if falls else _mixed(np.concatenate([row for _, row in rows]), n, design, total / df)
+    return (total / df, 0.0) if falls else _top(n, mean, design, within, df)
 
 
-def _mixed(values: FloatArray, n: np.ndarray, design: np.ndarray, variance: float) -> tuple[float, float]:
-    """Both variances of values (N,) of samples with n (S,) cycles each, of designs (S,); scaled by a variance of their size."""
-    from statsmodels.regression.mixed_linear_model import MixedLM
+def _top(n: np.ndarray, mean: FloatArray, design: np.ndarray, within: float, df: int) -> tuple[float, float]:
+    """Both variances where the likelihood is highest. n, mean, design: (S,) of samples; within: squares within them."""
+    from scipy.optimize import minimize_scalar
 
-    exog = (np.repeat(design, n)[:, None] == np.arange(design.max() + 1)).astype(float)
-    model = MixedLM(values / math.sqrt(variance), exog, groups=np.repeat(np.arange(len(n)), n))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # told by `converged`
-        try:
-            found = model.fit(reml=True, method="nm", maxiter=2000, xtol=1e-10, ftol=1e-10)
-        except np.linalg.LinAlgError:
-            found = None
-    if found is None or not found.converged:
-        what = "the mixed model of cycles in samples does not converge"
-        raise InputError(what, hint="give each sample as many cycles")
-    return float(found.scale) * variance, float(found.cov_re.squeeze()) * variance
+    def squares(log_ratio: float) -> tuple[FloatArray, float]:
+        w = n / (1 + n * math.exp(log_ratio))
+        about = mean - (np.bincount(design, w * mean) / np.bincount(design, w))[design]
+        return w, within + float((w * about**2).sum())
+
+    def misfit(log_ratio: float) -> float:
+        w, q = squares(log_ratio)
+        return df * math.log(q) + float(np.log(n / w).sum() + np.log(np.bincount(design, w)).sum())
+
+    near = min(LOG_RATIOS, key=misfit)
+    step = LOG_RATIOS[1] - LOG_RATIOS[0]
+    found = minimize_scalar(misfit, bounds=(near - step, near + step), method="bounded", options={"xatol": 1e-12})
+    variance = squares(found.x)[1] / df
+    return variance, math.exp(found.x) * variance
