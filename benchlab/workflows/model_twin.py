@@ -52,8 +52,9 @@ SLOWEST_DECAY_S = 1e6
 SESSION_K = 10.0
 """Warming over a session that the model has where no temperature is given."""
 
-PARABOLA = 1.78125
-"""Softening grows as d·min(2·(1 − u/m), 1) in the model, as s·(1 − u/m) in the twin: s/d at which both, times u, are closest."""
+PARABOLA = 1.5
+"""Softening grows as d·(1 − x²) in the model, x = u/m, as s·(1 − x) in the twin: s/d at which both, times u, are closest,
+∫ x²·(1 − x²)·(1 − x) dx / ∫ x²·(1 − x)² dx from 0 to 1."""
 
 
 @dataclass(frozen=True)

@@ -100,7 +100,7 @@ def test_the_same_on_a_cycle_within_0_15_degrees(one: Active) -> None:
 FORMS = [
     (active("friction", half_width_deg=2.0), 0.1),
     (active("softening", "cycle by cycle", softer=0.1), 0.2),
-    (active("softening", softer=0.1, cycles=0.1), 0.6),
+    (active("softening", softer=0.1, cycles=0.1), 0.5),
     (active("softening", "largest so far", softer=0.1), 0.15),
     (active("softening", "run in", softer=0.1), 0.15),
     (active("viscoelasticity", "log time"), 0.35),
