@@ -85,9 +85,9 @@ def window_at(film: Film, pressure_MPa: float) -> Window:
     >>> from benchlab.simulation.laws import Polynomial
     >>> film = Film(Wall((Layer("film", Polynomial(C10=1.5, C20=3.0), 0.0, 0.3),)), width_mm=9.0, radius_mm=6.37)
     >>> flat, bowed = window_at(film, 0.0), window_at(film, 0.3)
-    >>> at = np.searchsorted(flat.opening_mm, 10.8)  # stretched by a fifth: what it pulls with, flat and bowed, and the bow
-    >>> [round(float(each[at]), 2) for each in (flat.force_N_per_mm, bowed.force_N_per_mm, np.degrees(bowed.bow_rad))]
-    [0.89, 1.45, 25.44]
+    >>> pulls = [np.interp(10.8, each.opening_mm, each.force_N_per_mm) for each in (flat, bowed)]  # stretched by a fifth
+    >>> [round(float(each), 2) for each in (*pulls, np.degrees(np.interp(10.8, bowed.opening_mm, bowed.bow_rad)))]
+    [0.86, 1.43, 25.78]
     """
     opening = film.width_mm * OPENINGS
     bow = bow_rad(film, opening, pressure_MPa) if pressure_MPa > 0 else np.zeros_like(opening)

@@ -103,8 +103,8 @@ def test_baselines_choose_as_their_rules_say() -> None:
 
 
 def test_the_sparse_regression_names_a_large_scale() -> None:
-    found = study(5, ("camera_scale",), (14.0,), Layout(samples=3), [("camera_scale", "longer", True)])
-    assert sparse_regression(found.frame, found.designs) in {"camera_scale", "pressure_gain", "gravity"}
+    found = study(7, ("camera_scale",), (14.0,), Layout(samples=3), [("camera_scale", "longer", True)])
+    assert sparse_regression(found.frame, found.designs) in {"camera_scale", "pressure_gain"}
 
 
 def test_the_sealed_answers_are_those_of_the_card() -> None:
