@@ -26,9 +26,9 @@ class Bank:
     actives: tuple[Active, ...]
     directions: FloatArray
 
-    def of(self, names: Sequence[str]) -> Bank:
-        """Those of the effects named."""
-        keep = [i for i, active in enumerate(self.actives) if active.name in names]
+    def without(self, names: Sequence[str]) -> Bank:
+        """Those of other effects than the ones named."""
+        keep = [i for i, active in enumerate(self.actives) if active.name not in names]
         return Bank(tuple(self.actives[i] for i in keep), self.directions[:, keep])
 
 
@@ -42,9 +42,7 @@ def bank_of(problem: Problem, effects: Sequence[Effect]) -> Bank:
             active = Active(effect, values, form)
             direction = problem.model((active,)) - problem.base
             plain = first.setdefault(tuple(values.values()), direction)
-            same = plain is not direction and np.array_equal(
-                plain, direction
-            )  # a form that these data do not tell from the plain one
+            same = plain is not direction and np.array_equal(plain, direction)  # a form that these data do not tell
             if not same and np.isfinite(direction).all() and float(direction @ direction) > 1e-8:
                 actives.append(active)
                 directions.append(direction)
@@ -53,7 +51,7 @@ def bank_of(problem: Problem, effects: Sequence[Effect]) -> Bank:
 
 
 def starts_of(effect: Effect) -> list[dict[str, float]]:
-    """Starting values of all parameters together, the first MOST_STARTS of their combinations."""
+    """Starting values of all parameters together, of their combinations every so many, MOST_STARTS at most."""
     names = [parameter.name for parameter in effect.parameters]
     grids = [parameter.starts or (parameter.typical,) for parameter in effect.parameters]
     combined = [dict(zip(names, map(float, values))) for values in itertools.product(*grids)]
@@ -115,7 +113,7 @@ def flexible(problem: Problem) -> FloatArray:
     direction = np.array([feature.direction for feature in features])
     cycle = np.array([feature.cycle for feature in features])
     late = np.array([np.log1p(max(feature.time_s, 0.0)) for feature in features])
-    base = problem.mean_over_samples(problem.cells(()))
+    base = problem.mean_over_samples(problem.base_cells)
     shapes = [np.ones_like(x), x, x**2, x**3, np.sin(2 * np.pi * x)]
     columns = []
     for name in sorted(set(quantity)):

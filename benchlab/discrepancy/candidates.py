@@ -67,5 +67,5 @@ def distinct(fits: Sequence[Fit]) -> list[Fit]:
     """The best fit of each set of names, best first."""
     found: dict[tuple[str, ...], Fit] = {}
     for one in sorted(fits, key=lambda f: f.misfit):
-        found.setdefault(tuple(sorted(one.names)), one)
+        found.setdefault(one.key, one)
     return list(found.values())

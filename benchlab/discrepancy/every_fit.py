@@ -29,7 +29,7 @@ class OneFit:
 def every_fit(problem: Problem, effects: Sequence[Effect]) -> list[OneFit]:
     """The base alone, and each effect in its best form."""
     bare = nothing(problem)
-    alone = _matrix(problem, problem.cells(()))
+    alone = _matrix(problem, problem.base_cells)
     bank = bank_of(problem, effects)
     found = [OneFit("", 0, alone, alone)]
     for name in dict.fromkeys(active.name for active in bank.actives):

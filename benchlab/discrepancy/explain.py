@@ -56,7 +56,7 @@ def explain(
     usable = [effect for name, effect in effects.items() if name not in refused]
     found = identify(problem, usable, generator, rules, progress) if tested else described(problem)
     tell("where they disagree")
-    bare = problem.cells(())
+    bare = problem.base_cells
     gap = gaps(problem, bare)
     p = gap_p(problem, bare, generator) if tested else np.full(len(gap), np.nan)
     tell("held-out samples, designs and rates")

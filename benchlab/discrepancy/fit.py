@@ -32,6 +32,11 @@ class Fit:
     def names(self) -> tuple[str, ...]:
         return tuple(active.name for active in self.actives)
 
+    @property
+    def key(self) -> tuple[str, ...]:
+        """The names, in whatever order they were found."""
+        return tuple(sorted(self.names))
+
 
 def nothing(problem: Problem) -> Fit:
     """The base alone."""

@@ -52,7 +52,7 @@ def _several(names: list[str]) -> str:
 
 
 def _one(problem: Problem, best: Fit, kind: str, what: str, left: NDArray[np.bool_]) -> HeldOut:
-    before = _rmse(problem, problem.cells(()), left)
+    before = _rmse(problem, problem.base_cells, left)
     floor = noise_floor(problem, left)
     if not best.actives or left.all() or not left.any():
         return HeldOut(kind, what, before, before if not best.actives else np.nan, floor)
@@ -73,13 +73,11 @@ def noise_floor(problem: Problem, where: NDArray[np.bool_] | None = None) -> flo
     where: (C,), cells that count; NaN where no feature has two samples.
     """
     features = problem.features
-    number = np.bincount(features.feature, minlength=len(features.features))
-    means = np.bincount(features.feature, features.value, minlength=len(number)) / np.maximum(number, 1)
-    n = number[features.feature]
+    n = np.bincount(features.feature)[features.feature]
     usable = (n > 1) if where is None else (n > 1) & where
     if not usable.any():
         return np.nan
-    off = (features.value - means[features.feature])[usable]
+    off = (features.value - problem.mean_over_samples(features.value)[features.feature])[usable]
     return float(np.sqrt(np.mean(off**2 * n[usable] / (n[usable] - 1))))
 
 

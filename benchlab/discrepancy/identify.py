@@ -63,7 +63,8 @@ def identify(
     if not tried:
         return Identified("unexplained", bare, (), (), (), min(known.p, unknown.p), unknown.p, 0.0)
     best = tried[0]
-    left_over = _left_over(problem, best, forms, anything, noise, rules)
+    span = principal(anything, 0.02)
+    left_over = _left_over(problem, best, forms, anything, span, noise, rules)
     smaller: list[Fit] = []
     while len(best.names) < rules.most:
         if _further(problem, best, forms, bank, noise, rules) > rules.further:
@@ -73,7 +74,7 @@ def identify(
         more = [one for one in more if _worth(problem, one, best, rules)]
         if not more:
             break
-        rest = _left_over(problem, more[0], more_forms, anything, noise, rules)
+        rest = _left_over(problem, more[0], more_forms, anything, span, noise, rules)
         if rest.p < rules.adequate and rest.amount > rules.clears * left_over.amount:
             break  # it does not clear up what was left: no effect that is missing, but the form of the one that is there
         smaller.append(best)
@@ -87,7 +88,7 @@ def identify(
         p_left < rules.adequate and share < rules.share[min(len(best.names), len(rules.share)) - 1]
     ):
         verdict = "unexplained"
-    own = tuple(one for one in forms[_key(best)] if one.misfit - best.misfit < 4.0)
+    own = tuple(one for one in forms[best.key] if one.misfit - best.misfit < 4.0)
     return Identified(verdict, best, rivals, tuple(tried), own, min(known.p, unknown.p), p_left, share)
 
 
@@ -95,7 +96,7 @@ def _extended(problem: Problem, before: Sequence[Fit], bank: Bank, rules: Rules)
     """Fits with one effect more than those before: the most promising ones, best first; and by names the fits in all forms."""
     forms: dict[tuple[str, ...], list[Fit]] = {}
     for one in before:
-        others = bank.of([name for name in dict.fromkeys(a.name for a in bank.actives) if name not in one.names])
+        others = bank.without(one.names)
         if not others.actives:
             continue
         could = reach(others, one.residual, one.tangent)
@@ -122,16 +123,17 @@ def _plausible(problem: Problem, one: Fit) -> bool:
 
     What scatter forgives explains nothing.
     """
-    before, after = (float(np.mean(gaps(problem, problem.cells(actives)) ** 2)) for actives in ((), one.actives))
+    each = (problem.base_cells, problem.cells(one.actives))
+    before, after = (float(np.mean(gaps(problem, cells) ** 2)) for cells in each)
     return after < before + problem.error_of_means**2
 
 
 def _further(problem: Problem, best: Fit, forms: Forms, bank: Bank, noise: FloatArray, rules: Rules) -> float:
     """p of no further effect of the vocabulary, beside what the effects of the model do in their other forms."""
-    others = bank.of([name for name in dict.fromkeys(a.name for a in bank.actives) if name not in best.names])
+    others = bank.without(best.names)
     if not others.actives:
         return 1.0
-    return scan(problem, others.directions, best.residual, beside(best, forms[_key(best)]), noise, rules.multiplier).p
+    return scan(problem, others.directions, best.residual, beside(best, forms[best.key]), noise, rules.multiplier).p
 
 
 @dataclass(frozen=True)
@@ -143,17 +145,18 @@ class Left:
 
 
 def _left_over(
-    problem: Problem, best: Fit, forms: Forms, anything: FloatArray, noise: FloatArray, rules: Rules
+    problem: Problem,
+    best: Fit,
+    forms: Forms,
+    anything: FloatArray,
+    span: FloatArray,
+    noise: FloatArray,
+    rules: Rules,
 ) -> Left:
-    """What misfits of no particular name still take: all of them together, or the one that stands out."""
-    found = scan(problem, anything, best.residual, beside(best, forms[_key(best)]), noise, rules.multiplier)
-    basis = principal(anything, 0.02)
-    together = float(((basis.T @ best.residual) ** 2).sum()) - basis.shape[1]
+    """What misfits of no particular name (C, K) still take: all that they span (C, q) together, or the one that stands out."""
+    found = scan(problem, anything, best.residual, beside(best, forms[best.key]), noise, rules.multiplier)
+    together = float(((span.T @ best.residual) ** 2).sum()) - span.shape[1]
     return Left(found.p, max(together, found.largest**2 - found.usual**2, 0.0))
-
-
-def _key(one: Fit) -> tuple[str, ...]:
-    return tuple(sorted(one.names))
 
 
 def beside(best: Fit, forms: Sequence[Fit]) -> FloatArray:
@@ -164,7 +167,7 @@ def beside(best: Fit, forms: Sequence[Fit]) -> FloatArray:
 
 def _worth(problem: Problem, more: Fit, best: Fit, rules: Rules) -> bool:
     """Whether the larger model moves the predictions enough to be worth its name."""
-    before = gaps(problem, problem.cells(()))
+    before = gaps(problem, problem.base_cells)
     moved = gaps(problem, problem.cells(best.actives)) - gaps(problem, problem.cells(more.actives))
     needed = rules.moves[min(len(best.names), len(rules.moves)) - 1]
     return bool(np.sqrt(np.mean(moved**2)) > needed * np.sqrt(np.mean(before**2)))

@@ -62,23 +62,13 @@ def regions(problem: Problem, gap: FloatArray, p: FloatArray) -> tuple[Region, .
     for _, group in groupby(order, key=lambda i: _curve(features[i])):
         stretch: list[int] = []
         for i in [*group, -1]:
-            goes_on = (
-                i >= 0
-                and told[i]
-                and (
-                    not stretch
-                    or (
-                        np.sign(gap[i]) == np.sign(gap[stretch[-1]])
-                        and features[i].bin == features[stretch[-1]].bin + 1
-                    )
-                )
-            )
-            if goes_on:
-                stretch.append(i)
-                continue
-            if stretch:
+            last = stretch[-1] if stretch else i
+            apart = i < 0 or features[i].bin > features[last].bin + 1 or np.sign(gap[i]) != np.sign(gap[last])
+            if stretch and (apart or not told[i]):
                 found.append(_region(problem, stretch, gap, p))
-            stretch = [i] if i >= 0 and told[i] else []
+                stretch = []
+            if i >= 0 and told[i]:
+                stretch.append(i)
     return tuple(found)
 
 

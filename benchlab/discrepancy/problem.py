@@ -58,7 +58,7 @@ class Problem:
     def systematic(self) -> FloatArray:
         """(F,): error of the model's own numbers, the same for all samples: of thinning the runs, and of the form of what is missing."""
         features = self.features.features
-        mean = self.mean_over_samples(self.features.collect(predict(self.scene, (), self.features.quantities)))
+        mean = self.mean_over_samples(self.base_cells)
         quantity = np.array([feature.quantity for feature in features])
         found = np.zeros(len(features))
         for name in self.features.quantities:
@@ -143,8 +143,14 @@ class Problem:
         return self.whiten(self.cells(actives))
 
     @cached_property
+    def base_cells(self) -> FloatArray:
+        """(C,): what the base alone gives."""
+        return self.cells(())
+
+    @cached_property
     def base(self) -> FloatArray:
-        return self.model(())
+        """(C,): the same, whitened."""
+        return self.whiten(self.base_cells)
 
     @cached_property
     def quantity(self) -> NDArray[np.str_]:

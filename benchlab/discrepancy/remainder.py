@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from benchlab.discrepancy.identify import Identified
@@ -96,13 +98,13 @@ def _extremes(problem: Problem, name: str, labels: np.ndarray, left: FloatArray)
     return f"{means[low]:+.2g} on average for {_word(problem, name, low)}, {means[high]:+.2g} for {_word(problem, name, high)}"
 
 
-def _word(problem: Problem, name: str, value: object) -> str:
+def _word(problem: Problem, name: str, value: Any) -> str:
     if name == "the design":
-        return problem.scene.names[int(value)]  # type: ignore[call-overload]
+        return problem.scene.names[value]
     if name == "the kind of run":
-        return f"runs {problem.features.kinds[int(value)].words}"  # type: ignore[call-overload]
+        return f"runs {problem.features.kinds[value].words}"
     if name == "pressure":
-        return LEVELS[int(value)] + " pressures"  # type: ignore[call-overload]
+        return LEVELS[value] + " pressures"
     if name == "the place of the run on its sample":
-        return f"run {int(value) + 1}"  # type: ignore[call-overload]
+        return f"run {value + 1}"
     return f"cycle {value}" if name == "the cycle" else str(value) or "features without it"

@@ -9,6 +9,7 @@ The order of rows and columns says nothing. No unit is guessed; what is missing 
 
 from __future__ import annotations
 
+import functools
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -45,7 +46,7 @@ def read_measured(
     read = []
     for path in paths:
         name = (named or {}).get(path, RunName())
-        cells = read_cells(path, lambda header, path=path: find_columns(header, str(path), columns, against))  # type: ignore[misc]
+        cells = read_cells(path, functools.partial(find_columns, source=str(path), columns=columns, against=against))
         read.append((cells, _rows(cells, str(path), "line", against, replace(name, run=name.run or path.stem))))
     return _together(read, ", ".join(map(str, paths)))
 

@@ -17,10 +17,10 @@ LOG_RATIOS = np.linspace(-40.0, 70.0, 441)
 def reml_variances(cycles: Mapping[str, Mapping[str, FloatArray]]) -> tuple[float, float]:
     """(within samples, between samples of a design): a linear mixed model, design fixed, sample random. Cycles must scatter.
 
-    The restricted likelihood of both variances is one of their ratio ρ alone (Searle, Casella and McCulloch 1992, Variance Components, 6.6):
-    with w = n/(1 + n·ρ) of each sample and Q(ρ) the squares within samples and Σ w·(mean − that of the design)², the variance within is
-    Q/(N − designs), and −2·log L is (N − designs)·log Q + Σ log(1 + n·ρ) + Σ log(Σ w of a design). Where that rises from ρ = 0 samples do not
-    differ beyond their cycles, and the variance is that of all cycles about their design.
+    The restricted likelihood of both variances is one of their ratio ρ alone (Searle, Casella and McCulloch 1992, Variance
+    Components, 6.6): with w = n/(1 + n·ρ) of each sample and Q(ρ) the squares within samples and Σ w·(mean − that of the design)²,
+    the variance within is Q/(N − designs), and −2·log L is (N − designs)·log Q + Σ log(1 + n·ρ) + Σ log(Σ w of a design). Where that
+    rises from ρ = 0 samples do not differ beyond their cycles, and the variance is that of all cycles about their design.
 
     >>> a, b = reml_variances({"a": {"1": np.array([1.0, 3.0]), "2": np.array([7.0, 9.0]), "3": np.array([4.0, 6.0])}})
     >>> round(a, 3), round(b, 3)

@@ -94,14 +94,15 @@ def model_of(spec: Spec, path: Path | None = None, design: ShellDesign | None = 
     if path is not None and named is not None:
         hint = "give one of them"
         raise UsageError(f"--model {path} and the model {named.path.name} of the twin's file are two", hint=hint)
-    if path is None and named is None:
+    file = named.path if path is None and named is not None else path
+    if file is None:
         return None
     from benchlab.workflows.explain_cache import default_cache
     from benchlab.workflows.model_curves import open_model
     from benchlab.workflows.model_twin import model_twin
 
     wanted = design or read_design(named.design if named is not None and named.design else SHIPPED_CURVE)
-    opened = open_model(path if path is not None else named.path)  # type: ignore[union-attr]
+    opened = open_model(file)
     return model_twin(opened, wanted, cache=default_cache())
 
 

@@ -20,7 +20,7 @@ def test_a_direction_is_what_the_effect_does_to_the_base(made: Problem) -> None:
     assert {one.name for one in found.actives} == {"camera_scale"}  # without a flex sensor the other one does nothing
     expected = [(1 / one.values["factor"] - 1) * made.base for one in found.actives]
     assert np.allclose(found.directions.T, expected, atol=1e-9)
-    assert found.of(["end_caps"]).directions.shape == (len(made.base), 0)
+    assert found.without(["camera_scale", "flex_hysteresis"]).directions.shape == (len(made.base), 0)
 
 
 def test_a_form_that_does_the_same_is_kept_once() -> None:
