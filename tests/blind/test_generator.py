@@ -26,8 +26,6 @@ from tests.blind.generator.size import clean, noise_floor, shift
 from tests.blind.generator.solved import DESIGNS, FILM, GRIDS, base, family
 from tests.blind.generator.study import Study, study
 
-pytestmark = pytest.mark.slow
-
 SMALL = Layout(samples=2)
 BLIND = Path(__file__).parent
 

@@ -22,8 +22,6 @@ from benchlab.workflows.explain_measured import explain_measured
 from benchlab.workflows.explain_twin import TwinLab
 from tests.unit.discrepancy.scenes import base
 
-pytestmark = pytest.mark.slow
-
 SEED = 11
 PROTOCOL = """\
 title: One cycle

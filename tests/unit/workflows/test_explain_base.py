@@ -19,8 +19,6 @@ from benchlab.workflows.explain_cache import default_cache, key_of, read_cached
 from benchlab.workflows.explain_curves import Wanted
 from benchlab.workflows.explain_structure import design_with, knob_values
 
-pytestmark = pytest.mark.slow
-
 TRIAL = read_layup("trial")
 DESIGN = ShellDesign(10, 3)
 PRESSURES = [0.0, 0.01, 0.03, 0.06, 0.1, 0.15, 0.2]

@@ -22,8 +22,6 @@ from benchlab.workflows.explain_base import base_pressures, beam_base
 from benchlab.workflows.explain_structure import design_with
 from benchlab.workflows.model_curves import Model, knobs_of, model_base, modelled, open_model, slow_ramp
 
-pytestmark = pytest.mark.slow
-
 LAYUP = "from-measured-angles"
 DESIGN = ShellDesign(10, 3)
 P = [0.07, 0.14, 0.21, 0.28, 0.35]
