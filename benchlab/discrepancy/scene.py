@@ -233,11 +233,6 @@ class Scene:
                     found[knob, quantity] = (first, step, _none_at(KNOBS[knob][0], first, step, np.stack(logs)))
         return found
 
-    def knob_range(self, knob: str) -> tuple[float, float]:
-        """Smallest and largest value of a knob that every design was simulated with."""
-        first, step, _ = self._knobs[knob, next(iter(self._curves))]
-        return first, first + step * (VALUES - 1)
-
     def _smooth(self, name: str, values: FloatArray) -> FloatArray:
         """A curve on the common pressures, straight on beyond its end."""
         from scipy.interpolate import PchipInterpolator
