@@ -75,7 +75,7 @@ def identify(
         if not more:
             break
         rest = _left_over(problem, more[0], more_forms, anything, span, noise, rules)
-        if rest.p < rules.adequate and rest.amount > rules.clears * left_over.amount:
+        if rest.p < rules.adequate and not _clears(problem, more[0], best, rest, left_over, rules):
             break  # it does not clear up what was left: no effect that is missing, but the form of the one that is there
         smaller.append(best)
         tried, forms, best, left_over = more, more_forms, more[0], rest
@@ -166,11 +166,24 @@ def beside(best: Fit, forms: Sequence[Fit]) -> FloatArray:
 
 
 def _worth(problem: Problem, more: Fit, best: Fit, rules: Rules) -> bool:
-    """Whether the larger model moves the predictions enough to be worth its name."""
-    before = gaps(problem, problem.base_cells)
-    moved = gaps(problem, problem.cells(best.actives)) - gaps(problem, problem.cells(more.actives))
+    """Whether the larger model moves the predictions enough to be worth its name: by a share of the gap; a second effect also by
+    most of what the first has left of it, as long as that is more than a form may leave."""
+    before, left = (gaps(problem, cells) for cells in (problem.base_cells, problem.cells(best.actives)))
+    moved = _rms(left - gaps(problem, problem.cells(more.actives)))
     needed = rules.moves[min(len(best.names), len(rules.moves)) - 1]
-    return bool(np.sqrt(np.mean(moved**2)) > needed * np.sqrt(np.mean(before**2)))
+    if moved > needed * _rms(before):
+        return True
+    return len(best.names) == 1 and moved > max(rules.moves_left * _rms(left), rules.moves_least * _rms(before))
+
+
+def _clears(problem: Problem, more: Fit, best: Fit, rest: Left, left: Left, rules: Rules) -> bool:
+    """Whether of what the smaller model left, against the scatter or in the units of the quantity, a share is gone."""
+    now, then = (_rms(gaps(problem, problem.cells(one.actives))) ** 2 for one in (more, best))
+    return rest.amount <= rules.clears * left.amount or now <= rules.clears * then
+
+
+def _rms(values: FloatArray) -> float:
+    return float(np.sqrt(np.mean(values**2)))
 
 
 def share_explained(bare: Fit, best: Fit, left: Left) -> float:

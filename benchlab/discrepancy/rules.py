@@ -15,7 +15,8 @@ class Rules:
     adequate: smallest p of the flexible test at which nothing is left.
     doubtful, half: with a p of that test below the first, a model that explains less than the second share is no explanation.
     share: explained share from which one, two, three effects are named although something is left.
-    moves: smallest RMS by which a second, a third effect must move the predictions, as a share of the gap's.
+    moves: smallest RMS by which a second, a third effect must move the predictions, as a share of the gap's. moves_left, moves_least: a
+    second effect also as a share of that of the gap that is left, and then of the gap's.
     clears: where something is left beside a larger model, it must have fallen to this share of what was left before.
     most: effects in one model. beam, near: fits to which a further effect is added, if within this share of what the best explains.
     tries: effects that are tried beside each.
@@ -32,6 +33,8 @@ class Rules:
     half: float = 0.65
     share: tuple[float, ...] = (0.75, 0.9, 0.95)
     moves: tuple[float, ...] = (0.25, 0.4)
+    moves_left: float = 0.6
+    moves_least: float = 0.1
     clears: float = 0.5
     most: int = 3
     beam: int = 3

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from benchlab.discrepancy.base import KNOBS, Base
+from benchlab.discrepancy.base import KNOBS, Base, between
 from benchlab.units import FloatArray
 
 PRESSURES, VALUES = 257, 33
@@ -207,7 +207,7 @@ class Scene:
 
     @cached_property
     def _curves(self) -> dict[str, FloatArray]:
-        quantities = [q for q in ("angle_deg", "volume_mL", "force_N") if self.has(q)]
+        quantities = [q for q in ("angle_deg", "volume_mL", "force_N", "stiffness_Nmm2") if self.has(q)]
         return {
             q: np.stack([self._smooth(name, self.base.designs[name].curves[q]) for name in self.names])
             for q in quantities
@@ -216,8 +216,6 @@ class Scene:
     @cached_property
     def _knobs(self) -> dict[tuple[str, str], tuple[float, float, FloatArray]]:
         """By knob and quantity: first value, step, logarithms of factors (D, VALUES, PRESSURES)."""
-        from scipy.interpolate import CubicSpline
-
         found = {}
         for knob in filter(self.has_knob, KNOBS):
             tables = [self.base.designs[name].knobs[knob] for name in self.names]
@@ -228,7 +226,7 @@ class Scene:
                     logs = []
                     for name, t in zip(self.names, tables):
                         over_p = np.stack([self._smooth(name, row) for row in np.log(t.factor[quantity])])
-                        logs.append(CubicSpline(t.values, over_p, axis=0)(values))
+                        logs.append(between(knob, t.values, over_p, values))
                     first, step = float(values[0]), float(values[1] - values[0])
                     found[knob, quantity] = (first, step, _none_at(KNOBS[knob][0], first, step, np.stack(logs)))
         return found

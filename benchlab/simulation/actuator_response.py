@@ -17,7 +17,7 @@ from benchlab.simulation.cell import Cell
 from benchlab.simulation.laws.law import FloatArray
 from benchlab.simulation.layup import Layup
 from benchlab.simulation.neighbour import Neighbour, follow_beside
-from benchlab.simulation.response import Path
+from benchlab.simulation.response import Path, bending_stiffness_Nmm2
 
 PUBLISHED_LEVER_ARM_MM = 4.5
 """Lever arm at which the published blocked force, 37.72 N at 0.35 MPa (tw 3, slw 10), is the simulated straight-held
@@ -88,6 +88,10 @@ class Curves:
     def blocked_force_N(self) -> FloatArray:
         return self.fixture.force_N(self.pressure_MPa, self.moment_Nmm)
 
+    def bending_stiffness_Nmm2(self) -> FloatArray:
+        """(P,): dM/dk at constant pressure where the actuator bends freely."""
+        raise NotImplementedError
+
     def columns(self) -> dict[str, FloatArray]:
         """The curves by the names that they have in files."""
         names = (
@@ -110,6 +114,9 @@ class ActuatorResponse(Curves):
     cell: Cell
     free: Path
     held: Path | None
+
+    def bending_stiffness_Nmm2(self) -> FloatArray:
+        return np.array([bending_stiffness_Nmm2(self.cell, point) for point in self.free.points])
 
 
 def actuator_response(

@@ -52,10 +52,16 @@ _SMALLEST_STEP = 1e-11
 
 @dataclass(frozen=True)
 class BeamResponse(Curves):
-    """Response curves of the beam, as those of the shell cell. bow_rad: (P,), largest half angle of a window's bow. ballooning: b."""
+    """Response curves of the beam, as those of the shell cell. bow_rad: (P,), largest half angle of a window's bow.
+    stiffness_Nmm2: (P,), dM/dk. ballooning: b.
+    """
 
     bow_rad: FloatArray
+    stiffness_Nmm2: FloatArray
     ballooning: float
+
+    def bending_stiffness_Nmm2(self) -> FloatArray:
+        return self.stiffness_Nmm2
 
 
 def beam_response(
@@ -94,8 +100,10 @@ def beam_response(
         straight = walls.balance(held, straight=True) if blocked else None
         held = held if straight is None else straight
         moment = np.nan if straight is None else -float(walls.gradient(straight)[1])
-        rows.append((pressure, *free, walls.area_mm2(free), walls.bow_rad(free), moment))
-    reached, stretch, k, area, bow, moments = np.array(rows).reshape(-1, 6).T
+        rows.append(
+            (pressure, *free, walls.area_mm2(free), walls.bow_rad(free), walls.bending_stiffness_Nmm2(free), moment)
+        )
+    reached, stretch, k, area, bow, stiffness, moments = np.array(rows).reshape(-1, 7).T
     active = design.length_mm - 2 * cap_mm
     return BeamResponse(
         design=design,
@@ -110,6 +118,7 @@ def beam_response(
         moment_Nmm=moments,
         limit_pressure_MPa=limit,
         bow_rad=bow,
+        stiffness_Nmm2=stiffness,
         ballooning=ballooning,
     )
 
@@ -236,6 +245,11 @@ class _Walls:
         at = self.section
         bows = 2 * (self.swept(self.openings(state)) * at.width_mm).sum() / at.cell_mm
         return float(at.area_mm2 * (state[0] + state[1] * at.film.radius_mm) + bows)
+
+    def bending_stiffness_Nmm2(self, state: FloatArray) -> float:
+        """dM/dk, the stretch in balance."""
+        (along, mixed), (_, bending) = self.hessian(state)
+        return float(bending - mixed**2 / along)
 
     def bow_rad(self, state: FloatArray) -> float:
         return float(self.bow(self.openings(state)).max())

@@ -77,6 +77,12 @@ def minimise(
     return Solved(state, here, most_steps, converged=False)
 
 
+def condensed(at: Potential) -> FloatArray:
+    """(2, 2): Hessian in (k, λ), the fields in balance (Schur complement). Raises LinAlgError where they are not stable."""
+    factor = cholesky_banded(at.band, lower=True, check_finite=False)
+    return np.asarray(at.border - at.coupling.T @ cho_solve_banded((factor, True), at.coupling, check_finite=False))
+
+
 def _newton_step(
     at: Potential, border: np.ndarray, shift: float
 ) -> tuple[FloatArray, tuple[float, float], float] | None:

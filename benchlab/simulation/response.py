@@ -11,7 +11,7 @@ import numpy as np
 
 from benchlab.errors import UsageError
 from benchlab.simulation.cell import Cell, State
-from benchlab.simulation.newton import TOLERANCE, Solved, minimise
+from benchlab.simulation.newton import TOLERANCE, Solved, condensed, minimise
 
 SMALLEST_STEP_MPa = 5e-4
 """Below this a pressure step is not cut further: the pressure before it is the limit."""
@@ -88,6 +88,13 @@ def hold(cell: Cell, free: PathPoint, k: float, steps: int = 4) -> PathPoint | N
 def moment_Nmm(cell: Cell, solved: Solved) -> float:
     """Moment of the whole cross-section: −∂Π/∂k of the quarter cell, times 2 for the other half, by half the cell's length."""
     return -2 * float(solved.potential.border_gradient[0]) / cell.half_length_mm
+
+
+def bending_stiffness_Nmm2(cell: Cell, point: PathPoint) -> float:
+    """dM/dk of the whole cross-section where a free cell rests: how much moment a little more bending takes, all else in balance."""
+    at = cell.potential(point.state, point.pressure_MPa)
+    border = condensed(at)
+    return 2 * float(border[0, 0] - border[0, 1] ** 2 / border[1, 1]) / cell.half_length_mm
 
 
 def check_pressures(pressures_MPa: Sequence[float]) -> None:

@@ -78,7 +78,7 @@ def take_readings(
         if asked == stands_at:
             continue
         recent, stands_at = hold.stand(asked, settle_s), asked
-        code = max((r.code for r in recent[-3:]), default=-1)
+        code = max([r.code for r in recent if r.code >= 0][-3:], default=-1)
         if code < 0:
             raise BenchError("the bench does not say which code its DAC holds; vented", hint="flash the firmware again")
         volts = supply_V * code / DAC_CODES

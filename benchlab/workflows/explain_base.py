@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from benchlab.actuator import ShellDesign
-from benchlab.discrepancy.base import KNOBS, Base, DesignBase, Knob
+from benchlab.discrepancy.base import KNOBS, Base, DesignBase, Knob, between
 from benchlab.errors import BatchError, InputError, UsageError
 from benchlab.simulation.actuator_response import Fixture
 from benchlab.simulation.layup import Layup
@@ -130,14 +130,14 @@ def check_surrogate(
 
 def surrogate(table: DesignBase, quantity: str, pressures_MPa: FloatArray, knobs: Mapping[str, float]) -> FloatArray:
     """(P,): the curve of a quantity at pressures, times the factor of each knob at its value, as `discrepancy.scene` looks them up."""
-    from scipy.interpolate import CubicSpline, PchipInterpolator
+    from scipy.interpolate import PchipInterpolator
 
     value = PchipInterpolator(table.pressure_MPa, table.curves[quantity])(pressures_MPa)
     for name, setting in knobs.items():
         if setting != KNOBS[name][0]:
             knob = table.knobs[name]
             over_p = PchipInterpolator(table.pressure_MPa, np.log(knob.factor[quantity]), axis=1)(pressures_MPa)
-            value = value * np.exp(CubicSpline(knob.values, over_p, axis=0)(setting))
+            value = value * np.exp(between(name, knob.values, over_p, setting))
     return np.asarray(value)
 
 
@@ -248,7 +248,8 @@ def _with_cell(table: DesignBase, shape: ShellDesign | None, cell: DesignBase | 
     def at(row: FloatArray) -> FloatArray:
         return np.interp(table.pressure_MPa, cell.pressure_MPa, row)
 
-    curves = {"volume_mL": at(cell.curves["volume_mL"]), **table.curves}
+    lent = {name: at(cell.curves[name]) for name in ("volume_mL", "stiffness_Nmm2") if name in cell.curves}
+    curves = {**lent, **table.curves}
     knobs = {
         name: Knob(knob.values, {q: np.stack([at(row) for row in knob.factor[q]]) for q in curves if q in knob.factor})
         for name, knob in cell.knobs.items()

@@ -111,9 +111,11 @@ def _solved(arrays: dict[str, np.ndarray], name: str, design: ShellDesign, wante
         if f"values:{knob}" in arrays:
             values = _finite(arrays[f"values:{knob}"])
             shape = (len(values), len(pressure))
-            knobs[knob] = Knob(values, {q: _finite(arrays[f"factor:{knob}:{q}"], shape) for q in curves})
+            knobs[knob] = Knob(
+                values, {q: _finite(arrays[f"factor:{knob}:{q}"], shape) for q in curves if q != "stiffness_Nmm2"}
+            )
     notes = tuple(f"{name}: {note}" for note in arrays["notes"].tolist())
-    if not {"angle_deg", "volume_mL"} <= set(curves):
+    if not {"angle_deg", "volume_mL", "stiffness_Nmm2"} <= set(curves):
         raise KeyError("curves")
     was = replace(design, length_mm=float(_finite(arrays["length_mm"], ())))
     return Solved(DesignBase(name, pressure, curves, was, knobs), notes).called(name, design)

@@ -47,11 +47,13 @@ class Solved:
     notes: tuple[str, ...] = ()
 
     def called(self, name: str, shape: ShellDesign) -> Solved:
-        """The same under another name and in another length: the cell is the same, so angle and volume go with the length, and the
-        blocked force does not depend on it."""
+        """The same under another name and in another length: the cell is the same, so angle and volume go with the length, and
+        blocked force and stiffness do not depend on it."""
         assert self.design.shape is not None
         ratio = shape.length_mm / self.design.shape.length_mm
-        curves = {q: curve if q == "force_N" else ratio * curve for q, curve in self.design.curves.items()}
+        curves = {
+            q: ratio * curve if q in ("angle_deg", "volume_mL") else curve for q, curve in self.design.curves.items()
+        }
         notes = tuple(f"{name}: {note.removeprefix(f'{self.design.name}: ')}" for note in self.notes)
         return Solved(replace(self.design, name=name, shape=shape, curves=curves), notes)
 
@@ -86,7 +88,7 @@ def curves_with_knobs(name: str, design: ShellDesign, wanted: Wanted) -> Solved:
     elif wanted.forces:
         notes.append(f"{name}: no blocked force, because no stable state was found when held straight at all pressures")
     dense = np.interp(np.arange((len(pressures) - 1) * FINER + 1) / FINER, np.arange(len(pressures)), pressures)
-    curves = _dense(neutral, quantities, dense)
+    curves = _dense(neutral, [*quantities, "stiffness_Nmm2"], dense)
     few = pressures[np.arange(len(pressures) - 1, 0, -2)[::-1]]
     knobs = {}
     for knob in wanted.knobs:
@@ -121,6 +123,7 @@ QUANTITY: Mapping[str, Callable[[Curves], FloatArray]] = {
     "angle_deg": lambda found: found.angle_deg,
     "volume_mL": lambda found: found.volume_mL,
     "force_N": lambda found: found.blocked_force_N,
+    "stiffness_Nmm2": lambda found: found.bending_stiffness_Nmm2(),
 }
 
 

@@ -125,7 +125,9 @@ def model_base(
         what = f"it has no design {', '.join(missing)}, and the model knows no others"
         raise InputError(what, file=source, hint=f"it has {', '.join(foreign)}")
     curves = {name: foreign[name] for name in designs}
-    return foreign_base(curves, designs, simulated() if knobs else None, source=Path(source).name)
+    needed = {quantity for active in model.file.actives for quantity in active.effect.needs}
+    lacking = any(not needed <= set(design.curves) for design in curves.values())
+    return foreign_base(curves, designs, simulated() if knobs or lacking else None, source=Path(source).name)
 
 
 def modelled(base: Base, name: str, actives: Sequence[Active], pressures_MPa: Sequence[float]) -> Modelled:
@@ -199,8 +201,12 @@ def knob_settings(actives: Sequence[Active]) -> dict[str, float]:
 
 
 def check_range(base: Base, name: str, actives: Sequence[Active]) -> None:
-    """Raises InputError where an effect turns a knob farther than the design was simulated with it."""
+    """Raises InputError where an effect needs a curve that the base lacks, or a knob farther turned than it was simulated."""
     knobs = base.designs[name].knobs
+    for active in actives:
+        if lacking := [q for q in active.effect.needs if q not in base.designs[name].curves]:
+            what = f"{name} has no {', '.join(lacking)}, which {active.name} needs ({base.source})"
+            raise InputError(what, hint="leave the effect out of the model, or give it a base that has it")
     scene = slow_ramp(_any_base(), "any", np.linspace(0.0, 0.35, 8))
     for active in actives:
         for knob, setting in _settings(scene, active).items():

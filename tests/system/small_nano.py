@@ -15,22 +15,23 @@ from benchlab.devices.interface import Status
 from benchlab.devices.messages import ARM, HELLO, PROTOCOL, SET, VENT
 from benchlab.devices.wire import ANSWER, Decoder, Frame, encode
 
-SILENCE_S, ADC_SAMPLES, TRUE_SUPPLY_V = 0.2, 8, 4.9
+SILENCE_S, ADC_SAMPLES, TRUE_SUPPLY_V = 0.5, 8, 4.9  # the longest silence that is taken: a loaded machine hiccups
+TICK_S = 0.01
 REGULATOR, MONITOR = Line(0.0965, -0.001), Line(0.12, -0.12)
 
 
 class SmallNano:
     """`with SmallNano() as nano:` answers on nano.port. deaf_to: commands that are not answered. sticks: pressure that a vent leaves.
-    counts: of its reference on its supply; None is a firmware that does not measure it."""
+    counts: of its reference on its supply; None is a firmware that does not measure it. heard: frames that came, answered or not."""
 
     def __init__(self, ceiling_code: int = 2730, deaf_to: tuple[int, ...] = (), sticks_MPa: float = 0.0,
                  counts: float | None = None) -> None:  # fmt: skip
         self.ceiling_code, self.deaf_to, self.sticks_MPa, self.counts = ceiling_code, deaf_to, sticks_MPa, counts
         self.code, self.armed, self.silent = 0, False, False
-        self.power_on_code, self.silence_ms, self.patch = 0, 200, 0
+        self.power_on_code, self.silence_ms, self.patch = 0, round(1000 * SILENCE_S), 0
         self.highest_code = 0
         self.vents: list[str] = []
-        self.heard_s = time.monotonic()
+        self.heard, self._quiet = 0, 0
         self.master, self.slave = pty.openpty()
         tty.setraw(self.slave)
         self.port = os.ttyname(self.slave)
@@ -56,11 +57,14 @@ class SmallNano:
     def _run(self) -> None:
         decoder = Decoder()
         while not self._stop.is_set():
-            if select.select([self.master], [], [], 0.01)[0]:
+            if select.select([self.master], [], [], TICK_S)[0]:
                 for frame in decoder.feed(os.read(self.master, 4096)):
+                    self.heard += 1
                     if frame.command not in self.deaf_to:
                         self.answer(frame)
-            if self.armed and time.monotonic() - self.heard_s > SILENCE_S:
+            else:  # counted in its own time: where the whole machine stood still, nobody was silent
+                self._quiet += 1
+            if self.armed and self._quiet * TICK_S > SILENCE_S:
                 self._vent("silence")
                 self.silent = True
 
@@ -70,7 +74,7 @@ class SmallNano:
 
     def answer(self, frame: Frame) -> None:
         refused = Status(0)
-        self.heard_s = time.monotonic()
+        self._quiet = 0
         if frame.command in (HELLO, VENT):
             self._vent("hello" if frame.command == HELLO else "vent")
         elif frame.command == ARM:

@@ -222,12 +222,12 @@ def test_two_jobs_give_the_same_numbers(drawn_clip, tmp_path) -> None:
 
 
 def test_an_interruption_keeps_what_was_measured(tmp_path) -> None:
-    clip = draw_clip(tmp_path / "long.mp4", np.linspace(0, 90, 1500))
+    clip = draw_clip(tmp_path / "long.mp4", np.linspace(0, 90, 800))
     command = [sys.executable, "-m", "benchlab", "analyze", clip, "--json", "--overwrite"]
-    for wait_s in 0.5 * 1.25 ** np.arange(
-        14
-    ):  # until it comes while frames are read, on a fast machine and on a slow one
+    for wait_s in (0.5, 0.3, 0.8, 0.2, 1.2, 2.0, 3.0):  # until it comes while frames are read
         process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        while not (tmp_path / ".long.lock").exists() and process.poll() is None:
+            time.sleep(0.01)
         time.sleep(wait_s)
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=60)
@@ -235,7 +235,7 @@ def test_an_interruption_keeps_what_was_measured(tmp_path) -> None:
             break
     assert process.returncode == 130, err
     (video,) = json.loads(out)["videos"]
-    assert video["status"] == "partial" and 2 <= video["frames"] < 1500
+    assert video["status"] == "partial" and 2 <= video["frames"] < 800
     assert len(pd.read_csv(tmp_path / "long.csv")) == video["frames"]
     assert read_run_file(tmp_path / "long.h5").partial
     assert "PARTIAL" in err and "Traceback" not in err

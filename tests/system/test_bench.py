@@ -19,7 +19,7 @@ import pytest
 from benchlab.devices.messages import VENT
 from benchlab.errors import printable
 from benchlab.io.bench_file import read_bench, read_bench_file
-from tests.system.small_nano import MONITOR, REGULATOR, SmallNano
+from tests.system.small_nano import MONITOR, REGULATOR, SILENCE_S, SmallNano
 
 BENCH = """name: left
 date: '2026-05-31'
@@ -118,7 +118,7 @@ def test_monitor_in_lines_table_json_and_csv(benchlab, calibration: Path, tmp_pa
         rows = list(csv.DictReader((tmp_path / "seen.csv").open()))
         assert len(rows) == done.json["readings"] >= 15
         assert done.json["flex_V"]["mean"] == pytest.approx(1.0, abs=1e-3)
-        assert {row["angle_deg"][:4] for row in rows} <= {"44.9", "45.0"}
+        assert {row["angle_deg"][:4] for row in rows if row["angle_deg"]} <= {"44.9", "45.0"}  # a late answer is a hole
         lines = benchlab("bench", "monitor", *where, "--json-lines").out.splitlines()
         assert len(lines) >= 15 and json.loads(lines[0])["code"] == 0
         assert not nano.armed and nano.highest_code == 0
@@ -238,7 +238,10 @@ class Typist:
         while text not in self.seen:
             assert time.monotonic() < until, f"no {text!r} in {printable(self.seen)}"
             if select.select([self.terminal], [], [], 0.1)[0]:
-                self.seen += os.read(self.terminal, 4096).decode()
+                try:
+                    self.seen += os.read(self.terminal, 4096).decode()
+                except OSError:  # it has ended
+                    raise AssertionError(f"no {text!r} in {printable(self.seen)}") from None
         self.seen = self.seen.partition(text)[2]
 
     def type(self, text: str) -> None:
@@ -279,7 +282,7 @@ def test_a_calibration_is_typed(tmp_path: Path) -> None:
         lab.type("kPa\n")
         for number in range(1, 8):
             lab.wait_for(f"{number}/7 {'up' if number <= 4 else 'down'}")
-            time.sleep(0.3 if number < 3 else 0)  # longer than the silence that the firmware allows
+            time.sleep(1.5 * SILENCE_S if number < 3 else 0)  # longer than the silence that the firmware allows
             assert nano.armed and nano.code > 0
             shown = 1000 * nano.pressure_MPa
             if number == 2:

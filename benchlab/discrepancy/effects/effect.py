@@ -76,6 +76,8 @@ class Effect:
     forms: ClassVar[tuple[str, ...]] = ("plain",)
     seen_in: ClassVar[tuple[str, ...]] = ("angle_deg", "flex_V", "volume_mL", "force_N")
     """Quantities that it changes; where none of them was measured, it cannot be shown."""
+    needs: ClassVar[tuple[str, ...]] = ()
+    """Curves of the base that it asks for beside those that it changes (DesignBase.curves)."""
 
     def cannot_show(self, scene: Scene) -> str:
         """Why data like these cannot show the effect at all (no hold, no order of runs, designs unknown …); empty where they can."""

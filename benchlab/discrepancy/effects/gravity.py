@@ -1,13 +1,10 @@
 """gravity: the actuator's own weight bends it, by the attitude in which it is mounted.
 
-    θ → θ − q·(al/180 mm)²·C(p)·S(θ, φ)          S = 6/(W·al)·∂V/∂θ ≈ sin(φ + θ/2)          C = dθ/dp          (plain)
+    θ → θ',   θ' = θ − w·al³/(6·B(p))·S(θ', φ)          S = 6/(w·al²)·∂V/∂θ ≈ sin(φ + θ/2)          B = ∂M/∂k
 
-q `weight_MPa`: pressure whose bending moment is that of the weight of 180 mm where its middle is level, W·al/6 over
-the moment per pressure; al: length (180 mm where it is not known). φ: attitude of the base, 0 hanging, 90 level and
-bending upwards, 180 standing. V: potential energy of an arc of constant curvature and even weight; S is exact. C: how
-far a little more pressure bends, taken from the base, which is what a little moment does where pressure acts as a
-moment p·c with constant c. Forms: `secant`: C = θ/p; where the attitude is not told it is hanging, or, as forms,
-`standing`, `level, bending up`, `level, bending down`.
+w `mass_g_per_m` times g: weight per length; al: length; B: bending stiffness of the base at constant pressure, with k = θ/al. φ: attitude
+of the base, 0 hanging, 90 level and bending upwards, 180 standing. V: potential energy of an arc of constant curvature and even
+weight; S is exact. What the weight bends more near the base than at the tip is of second order and left out.
 By nature confounded: with softer or stiffer parts in one attitude; two attitudes tell it.
 """
 
@@ -17,14 +14,16 @@ from typing import ClassVar
 
 import numpy as np
 
-from benchlab.discrepancy.effects.effect import At, Effect, Parameter
+from benchlab.discrepancy.effects.effect import UNKNOWN_LENGTH, At, Effect, Parameter
 from benchlab.discrepancy.scene import Scene
 from benchlab.units import FloatArray
 
-ATTITUDE_deg = {"standing": 180.0, "level, bending up": 90.0, "level, bending down": -90.0}
-"""Of the mounting, by form, where it is not told; 0, hanging, else."""
+HANGING_deg = 0.0
+"""The attitude where it is not told: of a model that is drawn, never of measured samples."""
 
-LENGTH_mm = 180.0
+NEWTON_PER_GRAM = 9.81e-3
+TURNS = 4
+"""Newton steps towards the angle at which weight and stiffness balance, with S' of small angles."""
 
 
 class Gravity(Effect):
@@ -32,9 +31,8 @@ class Gravity(Effect):
     acts_on: ClassVar[str] = "load"
     physics: ClassVar[str] = (
         "Weight per length makes a moment along the arc; as a generalised force on the angle of a "
-        "constant-curvature arc it is W·al/6·sin(φ + θ/2) for small angles. It works against the same stiffness as "
-        "the pressure does, so it is told as a pressure: 15 g on 180 mm against 800 N·mm/MPa make 0.005 MPa "
-        "(chosen)."
+        "constant-curvature arc it is w·al²/6·sin(φ + θ/2) for small angles. The actuator gives to it by its bending "
+        "stiffness under pressure, which the simulation has: 15 g on 180 mm (chosen) against 10 000 N·mm² are 4.6° where level."
     )
     looks_like: ClassVar[str] = (
         "hanging: falls short in the middle of the range; level: a shift of one sign that changes with the way it bends"
@@ -42,46 +40,36 @@ class Gravity(Effect):
     shown_by: ClassVar[str] = "one design mounted hanging and level, or bending up and bending down"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(
-            "weight_MPa",
-            "MPa",
-            0.0,
-            0.06,
-            0.005,
-            0.0,
-            (0.002, 0.006, 0.02),
-            "pressure that the weight outweighs where level",
+            "mass_g_per_m", "g/m", 0.0, 1000.0, 80.0, 0.0, (30.0, 100.0, 350.0), "mass of the actuator per length"
         ),
     )
-    forms: ClassVar[tuple[str, ...]] = ("plain", "secant", *ATTITUDE_deg)
     seen_in: ClassVar[tuple[str, ...]] = ("angle_deg", "flex_V")
+    needs: ClassVar[tuple[str, ...]] = ("stiffness_Nmm2",)
 
     def cannot_show(self, scene: Scene) -> str:
-        return (
-            ""
-            if np.isfinite(scene.orientation_deg).all()
-            else "how the samples were mounted is not known (orientation_deg)"
-        )
+        if not scene.lengths_known:
+            return UNKNOWN_LENGTH
+        if not scene.has("stiffness_Nmm2"):
+            return "the simulation has no bending stiffness"
+        if not np.isfinite(scene.orientation_deg).all():
+            return "how the samples were mounted is not known (orientation_deg)"
+        return ""
 
     def angle(self, angle_deg: FloatArray, at: At) -> FloatArray:
         scene = at.scene
-        told = scene.orientation_deg
-        mount = np.where(np.isfinite(told), told, ATTITUDE_deg.get(at.form, 0.0))
-        length = np.where(np.isfinite(scene.length_mm), scene.length_mm, LENGTH_mm)
-        weight = at.values["weight_MPa"] * (length / LENGTH_mm) ** 2
-        return angle_deg - weight * _compliance(at) * torque(angle_deg, mount)
-
-
-def _compliance(at: At) -> FloatArray:
-    """(T, R): C in °/MPa."""
-    at_rest = at.scene.slope("angle_deg", np.maximum(at.load_MPa, 0.0))
-    if at.form != "secant":
-        return at_rest
-    above = np.maximum(at.load_MPa, 1e-3)
-    return at.scene.curve("angle_deg", above, {}) / above
+        mount = np.where(np.isfinite(scene.orientation_deg), scene.orientation_deg, HANGING_deg)
+        stiffness = scene.curve("stiffness_Nmm2", np.maximum(at.load_MPa, 0.0), {})
+        weight_N_per_mm = at.values["mass_g_per_m"] / 1000 * NEWTON_PER_GRAM
+        bent = weight_N_per_mm * scene.length_mm**3 / (6 * stiffness)
+        found = angle_deg
+        for _ in range(TURNS if weight_N_per_mm else 0):
+            off = found - angle_deg + np.degrees(bent * torque(found, mount))
+            found = found - off / np.maximum(1 + bent / 2 * np.cos(np.radians(mount + found / 2)), 0.5)
+        return found
 
 
 def torque(angle_deg: FloatArray, mount_deg: FloatArray | float) -> FloatArray:
-    """S(θ, φ): 6·∂V/∂θ/(W·al) with V = −W·al·[(cos φ − cos(φ + θ))/θ² − sin φ/θ], by its series below 0.2 rad.
+    """S(θ, φ): 6·∂V/∂θ/(w·al²) with V = −w·al²·[(cos φ − cos(φ + θ))/θ² − sin φ/θ], by its series below 0.2 rad.
 
     >>> torque(np.array([0.0, 20.0]), 90.0).round(3)
     array([1.   , 0.982])

@@ -49,6 +49,7 @@ class LineResistance(Effect):
         ),
     )
     forms: ClassVar[tuple[str, ...]] = ("plain", "with air")
+    needs: ClassVar[tuple[str, ...]] = ("volume_mL",)
 
     def cannot_show(self, scene: Scene) -> str:
         return scene.shows_time if scene.has("volume_mL") else "the volume of the designs is not known"

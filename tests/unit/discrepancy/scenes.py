@@ -63,6 +63,7 @@ def base(designs: int = 5, *, knobs: Sequence[str] = tuple(KNOBS), known: bool =
             "angle_deg": angle_deg(pressure, slw, tw),
             "volume_mL": 15 + (4 + 0.2 * tw) * (1 - np.exp(-pressure / 0.15)) + 5 * pressure,
             "force_N": 100 * pressure * (1 - slw / 100),
+            "stiffness_Nmm2": (8000 + 300 * slw) * (1 + pressure),
         }
         own = {name: knob(name, pressure, slw, tw) for name in knobs} if known else {}
         found[shape.name] = DesignBase(shape.name, pressure, curves, shape if known else None, own)

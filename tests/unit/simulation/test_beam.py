@@ -155,6 +155,14 @@ def test_volume_is_that_of_pappus_and_moment_that_of_virtual_work():
     assert bows.volume_mm3[0] > np.pi * R**2 * (bows.axial_stretch[0] + bows.angle_rad[0] / 180 * R) * 180
 
 
+@pytest.mark.parametrize("window", [3, 15])
+def test_bending_stiffness_is_what_holds_it_straight_over_how_far_it_would_bend(window):
+    """In the small, where both are linear in pressure."""
+    found = beam_response(ShellDesign(strip_width_mm=10, window_width_mm=window), LAYUP, [1e-6])
+    held, free = found.moment_Nmm[0], found.angle_rad[0] / found.design.length_mm
+    assert found.bending_stiffness_Nmm2()[0] == pytest.approx(held / free, rel=1e-3)
+
+
 def test_caps_shorten_the_part_that_bends():
     free = beam_response(ShellDesign(10, 3), LAYUP, [0.2], blocked=False)
     capped = beam_response(ShellDesign(10, 3), LAYUP, [0.2], cap_mm=18, blocked=False)

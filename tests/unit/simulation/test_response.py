@@ -10,7 +10,7 @@ from benchlab.simulation.cell import Cell
 from benchlab.simulation.laws import Polynomial
 from benchlab.simulation.layup import Layup
 from benchlab.simulation.newton import minimise
-from benchlab.simulation.response import follow, hold
+from benchlab.simulation.response import bending_stiffness_Nmm2, follow, hold
 from tests.unit.simulation.cells import R, shaken, uniform_tube
 
 LAYUP = Layup("test", "guessed", film=Polynomial(C10=1.5, C20=3.0))
@@ -62,6 +62,12 @@ def test_held_straight_by_two_ways():
     pushed = hold(CELL, follow(CELL, [0.1, 0.2]).points[-1], 0.0)
     assert straight.moment_Nmm == pytest.approx(pushed.moment_Nmm, rel=1e-7)
     assert straight.state.k == 0.0
+
+
+def test_bending_stiffness_is_the_slope_of_the_held_moment():
+    free, more = follow(CELL, [0.2]).points[0], 1e-5
+    slope = (hold(CELL, free, free.state.k - more).moment_Nmm - hold(CELL, free, free.state.k + more).moment_Nmm) / 2e-5
+    assert bending_stiffness_Nmm2(CELL, free) == pytest.approx(slope, rel=1e-4)
 
 
 def test_without_pressure_nothing_bends():

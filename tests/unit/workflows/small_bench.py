@@ -11,7 +11,7 @@ from benchlab.bench import Bench, Line
 from benchlab.devices.interface import Fault, LostError, Reading, Status
 from benchlab.errors import BenchError
 
-SILENCE_S = 0.2
+SILENCE_S = 0.5
 TRUE, MONITOR = Line(0.0965, -0.001), Line(0.12, -0.12)
 
 

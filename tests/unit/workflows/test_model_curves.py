@@ -78,12 +78,12 @@ def test_bulging_of_the_beam_is_the_beam_that_bulges(tmp_path: Path) -> None:
 
 
 def test_structure_of_the_cell_is_that_of_a_cell_solved_anew(tmp_path: Path) -> None:
-    """To the error of looking it up between simulated structures: 1.3 % here, of an effect of 9 %."""
+    """To the error of looking it up between simulated structures: 0.1 % here, of an effect of 9 %."""
     found = curves(a_model(tmp_path, an_effect("seam_margin", margin_mm=0.2), kind="cell"), pressures=[0.1, 0.2])
     anew = actuator_response(
         *design_with(DESIGN, read_layup(LAYUP), {"seam_margin_mm": 0.2}), [0.1, 0.2], blocked=False
     )
-    assert found.curves["angle_deg"] == pytest.approx(anew.angle_deg, rel=0.015)
+    assert found.curves["angle_deg"] == pytest.approx(anew.angle_deg, rel=0.003)
     assert (found.bare["angle_deg"] > 1.07 * anew.angle_deg).all()
 
 

@@ -28,7 +28,7 @@ def base(film_knob: bool = True) -> Base:
     knobs = (
         {"film_modulus": Knob(values, {"angle_deg": factor, "volume_mL": np.ones_like(factor)})} if film_knob else {}
     )
-    curves = {"angle_deg": ANGLE, "volume_mL": 20 + 16 * P - 14 * P**2}
+    curves = {"angle_deg": ANGLE, "volume_mL": 20 + 16 * P - 14 * P**2, "stiffness_Nmm2": 1e4 + 0 * P}
     design = DesignBase("one", P, curves, ShellDesign(10, 3), knobs)
     return Base({"one": design}, "cell", "in closed form")
 

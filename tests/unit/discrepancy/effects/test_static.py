@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.integrate import quad
-from scipy.optimize import least_squares
+from scipy.optimize import least_squares, minimize_scalar
 
-from benchlab.discrepancy.base import Base
+from benchlab.discrepancy.base import DesignBase
 from benchlab.discrepancy.effects.camera_tilt import seen_over_true
 from benchlab.discrepancy.effects.catalogue import built_in
 from benchlab.discrepancy.effects.effect import Active, At
@@ -89,41 +89,50 @@ def test_torque_of_the_weight_is_that_of_the_potential(angle: float, mount: floa
 
 
 def test_weight_pulls_down_by_attitude() -> None:
-    def change(form: str = "plain", orientation_deg: float | None = None) -> np.ndarray:
+    def change(orientation_deg: float | None = None) -> np.ndarray:
         on = scene(("slow",), 2, orientation_deg=orientation_deg)
-        return predicted("gravity", on, form, weight_MPa=0.005) - bare(on)
+        return predicted("gravity", on, mass_g_per_m=80) - bare(on)
 
-    hanging, standing = change(orientation_deg=0), change(orientation_deg=180)
+    hanging, standing = change(0), change(180)
     high = slice(20, 60)
     assert np.all(hanging[high] < 0), "hanging, it is held back"
-    np.testing.assert_allclose(standing, -hanging, atol=1e-12)
-    assert np.all(change(orientation_deg=90)[:30] < 0), "bending upwards"
-    assert np.all(change(orientation_deg=-90)[:30] > 0), "bending downwards"
-    assert np.array_equal(change(), hanging), "hanging, where it is not told"
-    assert np.array_equal(change("standing"), standing)
-    assert np.array_equal(change("level, bending up"), change(orientation_deg=90))
-    assert np.array_equal(change("standing", 0), hanging), "what is told counts"
+    assert np.all(standing[high] > 0), "standing, the weight helps"
+    assert np.all(np.abs(standing[high]) > np.abs(hanging[high])), "and the more, the farther it has bent"
+    assert np.all(change(90)[:30] < 0), "bending upwards"
+    assert np.all(change(-90)[:30] > 0), "bending downwards"
+    assert np.array_equal(change(), hanging), "a model that is drawn hangs"
 
 
-def test_half_the_length_is_a_quarter_of_the_weights_moment() -> None:
-    """Half the weight at half the lever."""
-    long = base(1)
-    short = {n: replace(d, shape=replace(d.shape, length_mm=90.0)) for n, d in long.designs.items() if d.shape}
+@pytest.mark.parametrize("orientation_deg", [0.0, 90.0, 180.0])
+def test_weight_rests_where_the_energy_is_least(orientation_deg: float) -> None:
+    """Of bending, B·(θ − θ0)²/2al, and of height, by quadrature: 80 g/m on 180 mm."""
+    on = scene(("still",), 1, orientation_deg=orientation_deg)
+    rest, length, weight = float(bare(on)[0, 0]), 180.0, 80e-6 * 9.81
+    stiffness = float(on.curve("stiffness_Nmm2", on.pressure_MPa, {})[0, 0])
 
-    def change(on: Base) -> np.ndarray:
-        runs = scene(("slow",), 1, on=on)
-        return predicted("gravity", runs, weight_MPa=0.005) - bare(runs)
+    def energy(angle_deg: float) -> float:
+        theta, mount = np.radians(angle_deg), np.radians(orientation_deg)
 
-    np.testing.assert_allclose(change(replace(long, designs=short)), change(long) / 4, atol=1e-12)
+        def fallen(r: float) -> float:
+            return quad(lambda q: np.cos(mount + theta * q), 0, r)[0]
+
+        return stiffness * np.radians(angle_deg - rest) ** 2 / (2 * length) - weight * length**2 * quad(fallen, 0, 1)[0]
+
+    found = minimize_scalar(energy, bounds=(rest - 30, rest + 30), method="bounded", options={"xatol": 1e-6}).x
+    assert predicted("gravity", on, mass_g_per_m=80)[0, 0] == pytest.approx(found, abs=2e-3)
 
 
-def test_weight_is_a_pressure_for_small_weights() -> None:
-    """Level and straight, q takes off what the pressure q gives."""
-    on = scene(("slow",), 1, orientation_deg=90)
-    angle = bare(on)
-    expected = on.curve("angle_deg", on.pressure_MPa - 1e-4 * torque(angle, 90.0), {}) - angle
-    found = predicted("gravity", on, weight_MPa=1e-4) - angle
-    np.testing.assert_allclose(found[2:58], expected[2:58], rtol=0.02)
+def test_half_the_length_bends_an_eighth_where_it_lies_straight() -> None:
+    """Half the weight at half the lever, over half the length to bend."""
+    flat = base(1)
+    still = {n: replace(d, curves={**d.curves, "angle_deg": np.zeros(36)}) for n, d in flat.designs.items()}
+    short = {n: replace(d, shape=replace(d.shape, length_mm=90.0)) for n, d in still.items() if d.shape}
+
+    def change(designs: dict[str, DesignBase]) -> np.ndarray:
+        runs = scene(("slow",), 1, on=replace(flat, designs=designs), orientation_deg=90)
+        return predicted("gravity", runs, mass_g_per_m=1.0)
+
+    np.testing.assert_allclose(change(short), change(still) / 8, rtol=1e-4)
 
 
 def test_a_leak_takes_its_share_and_an_orifice_more_of_small_pressures() -> None:
