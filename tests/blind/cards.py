@@ -15,8 +15,8 @@ from tests.blind.generator.hidden.catalogue import KNOWN, UNKNOWN
 from tests.blind.generator.setting import Layout
 from tests.blind.generator.study import Study, study, truth
 
-FIRST_SEED = {"tune": 1_000_000, "calibrate": 2_000_000, "score": 3_000_000}
-"""Each card has a million seeds of its own."""
+FIRST_SEED = {"tune": 1_000_000, "calibrate": 2_000_000, "score": 5_000_000}
+"""Each card has a million seeds of its own. Three million was the scoring card before this one: 300 of its answers were seen."""
 STRENGTHS = (1.0, 2.0, 4.0)
 
 
