@@ -117,6 +117,7 @@ def explain(measured: tuple[Path, ...], loop: bool, strict: bool, as_json: bool,
     \b
     Writes into --out, all or nothing:
       report.html   the story: where, what, rivals, gap before and after, held-out data, what is left, what to do next
+      explain.png   the verdict, the map of the gap and the largest gaps before and after, in one picture
       explain.json  all of it as numbers, as --json prints it
       model.yaml    the simulation with what it lacked: for `benchlab simulate --model`, `sweep`, `run`, and a further `explain`
       next_*.yaml   the protocol to run next, for `benchlab run`
@@ -222,4 +223,7 @@ def _tell_files(paths: list[str]) -> None:
         click.echo(f"  wrote {printable(path)}", err=True)
     if paths:
         tables, figures = (sum(path.endswith(suffix) for path in paths) for suffix in (".csv", ".svg"))
-        click.echo(f"  wrote beside it: explain.json, {tables} tables (CSV), {figures} figures (SVG and PNG)", err=True)
+        click.echo(
+            f"  wrote beside it: explain.png, explain.json, {tables} tables (CSV), {figures} figures (SVG and PNG)",
+            err=True,
+        )

@@ -101,7 +101,13 @@ def foreign_base(
     lent = [name for name in found if found[name].knobs]
     words = f"{source}; structural effects act through the sensitivities of the shell cell" if lent else source
     missing = {name: "no simulated curve" for name in designs if name not in curves}
-    return Base(found, "foreign", words, missing=missing, warnings=cell.warnings if cell else ())
+    notes = cell.warnings if cell else ()
+    notes += tuple(
+        f"{name}: no shell cell, so no structural effect ({why})"
+        for name, why in (cell.missing.items() if cell else ())
+        if name in found
+    )
+    return Base(found, "foreign", words, missing=missing, warnings=notes)
 
 
 def check_surrogate(

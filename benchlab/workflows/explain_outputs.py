@@ -27,6 +27,7 @@ from benchlab.io.nexus import plain
 from benchlab.io.protocol_file import read_protocol
 from benchlab.protocol.plan import Plan
 from benchlab.report.explain.document import NUMBERS, explain_document
+from benchlab.report.explain.pictures import OVERVIEW, write_overview
 from benchlab.report.explain.words import verdict_words
 from benchlab.workflows.explain_answer import answer_of
 from benchlab.workflows.explain_chosen import Chosen
@@ -71,11 +72,12 @@ def written(
     there = {one.name for one in chosen.given}
     lacking = {name: effect for name, effect in effects().items() if name not in there}
     document = explain_document(explanation, lacking, made, sums, plan)
-    beside = [MODEL] * (model is not None) + [Path(path).name for path in [_path(explanation)] if path]
+    beside = [OVERVIEW, *[MODEL] * (model is not None), *[Path(path).name for path in [_path(explanation)] if path]]
     outputs = replace(outputs, names=names_of(document, beside=beside, numbers=NUMBERS))
     outputs.check(overlay=False, inputs=inputs)
 
     def write_beside(folder: Path) -> None:
+        write_overview(explanation, folder / OVERVIEW)
         if model is not None:
             write_model(folder / MODEL, model)
         if text:

@@ -73,6 +73,7 @@ def test_a_study_becomes_a_page_numbers_and_a_model(folder: Path, benchlab: Any)
     assert "The simulation lacks friction" in done.err and "Simulated data" in done.err
     assert sorted(path.name for path in out.iterdir()) == [
         "explain.json",
+        "explain.png",
         "figures",
         "model.yaml",
         "report.html",

@@ -47,7 +47,7 @@ def circle(folder: Path, name: str, film: bool) -> Loop:
     hidden = replace(
         read_twin(None),
         effects={name: EFFECTS[name](**{parameter: size})},
-        camera=Camera(frames_per_s=10, width_px=480, height_px=360),
+        camera=Camera(frames_per_s=6, width_px=480, height_px=360),
     )
     settings = LoopSettings(folder / "loop", samples=3, rounds=1, protocol=protocol)
     return explain_loop(settings, TwinLab(base(2), hidden, SEED, film), base(2), explained)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from benchlab.discrepancy.explanation import Explanation
@@ -24,6 +25,7 @@ from benchlab.report.explain.map_figure import ALPHA, GapMap, Model, colour_limi
 from benchlab.report.explain.names import mark_of, names_of
 from benchlab.report.explain.overview import draw_overview
 from benchlab.report.explain.quantity import Quantity, main_quantity, quantities_of
+from benchlab.report.figures import save_png
 from benchlab.report.protocol_figure import draw_protocol_figure
 from benchlab.report.study.figures import MOST_ROWS
 from benchlab.report.study.origins import write_mark
@@ -33,12 +35,12 @@ from benchlab.report.svg import panel_of
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-OVERVIEW = "explain"
-"""Name of the picture for those who look at one: explain.png."""
+OVERVIEW = "explain.png"
+"""The picture for those who look at one."""
 
 
-def overview_panel(explanation: Explanation) -> Panel:
-    return panel_of(draw_overview(explanation), OVERVIEW, f"Overview of what was explained{_in_brackets(explanation)}")
+def write_overview(explanation: Explanation, path: Path) -> None:
+    save_png(draw_overview(explanation), path)
 
 
 def map_pictures(explanation: Explanation, model: Model = "simulated") -> Pictures:

@@ -3,8 +3,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchlab.discrepancy.features import BINS, HOLD_EDGES, Features, features_of
+from benchlab.discrepancy.features import Features, features_of
 from benchlab.discrepancy.measured import Run
+from benchlab.discrepancy.points import BINS, HOLD_EDGES
 from tests.unit.discrepancy.scenes import KINDS, TOP_MPa, base
 
 DESIGN = next(iter(base(1).designs))

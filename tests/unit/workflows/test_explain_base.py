@@ -1,6 +1,7 @@
 """The base that explain compares with: against cells simulated anew, from its cache, at its ends."""
 
 import functools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -194,6 +195,10 @@ def test_foreign_curves_take_volume_and_knobs_of_the_cell():
     lent, own = found.designs["a"].knobs["film_modulus"], cell.designs["a"].knobs["film_modulus"]
     assert lent.factor["angle_deg"] == pytest.approx(own.factor["angle_deg"])
     assert not found.designs["c"].knobs and found.designs["c"].shape is None
+    assert not found.warnings
+    bursts = replace(cell, designs={}, missing={"a": "it bursts", "z": "too"})
+    (told,) = foreign_base({"a": table, "c": unknown}, {"a": DESIGN}, bursts).warnings
+    assert told == "a: no shell cell, so no structural effect (it bursts)"
 
 
 def test_the_error_of_the_surrogate_is_told():
