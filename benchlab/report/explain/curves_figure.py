@@ -25,6 +25,7 @@ from benchlab.report.study.figures import (
     new_panel,
     write_title,
 )
+from benchlab.report.wording import fitted
 from benchlab.units import FloatArray
 
 if TYPE_CHECKING:
@@ -38,6 +39,8 @@ MOST_PANELS = 18
 _MOST_CYCLES = 2
 _GAP_IN, _BETWEEN_IN = 0.95, 0.1
 _DASHED = (0, (4, 2))
+_KIND_IN = 0.15
+"""Height of the line that says what kind of run it is."""
 _TURNED = {"unloading": "v", "loading": "^"}
 
 
@@ -96,16 +99,20 @@ def draw_kind(
 ) -> Figure:
     """names: what measured values, and the model with what was named, are called. limits: of values and of gaps, those of all panels."""
     bottom = 0.46 + _GAP_IN + _BETWEEN_IN
-    figure, upper = new_panel(THIRD_IN, bottom + 1.9 + TITLE_IN, bottom=bottom, top=TITLE_IN)
+    head = TITLE_IN + _KIND_IN
+    figure, upper = new_panel(THIRD_IN, bottom + 1.9 + head, bottom=bottom, top=head)
     plot_kind(upper, curves, one, names)
     upper.set_ylim(*limits[0])
     if legend:
         key = upper.legend(loc="best", fontsize=7, frameon=False, handlelength=1.8, labelspacing=0.3, borderaxespad=0.2)
         for text in key.get_texts():
             text.set_parse_math(False)
-    write_title(figure, one.title)
+    write_title(figure, cut(one.design, 40))
+    width, height = figure.get_size_inches()
+    words = fitted(one.kind, width - 0.3, 8)
+    figure.text(0.06 / width, 1 - 0.25 / height, words, va="top", fontsize=8, parse_math=False)
     make_room(figure, upper)
-    box, height = upper.get_position(), figure.get_size_inches()[1]
+    box = upper.get_position()
     lower = figure.add_axes((box.x0, 0.46 / height, box.width, _GAP_IN / height), sharex=upper)
     plot_gap(lower, curves, one)
     lower.set_ylim(*limits[1])

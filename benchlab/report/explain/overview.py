@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_WIDTH, _LEFT, _MAP, _RIGHT, _GAP = 13.0, 2.5, 3.6, 5.3, 0.75
+_WIDTH, _LEFT, _MAP, _RIGHT, _GAP = 13.4, 2.9, 3.6, 5.3, 0.75
 _HEAD, _FOOT, _TALL_CURVES, _MOST_ROWS = 1.45, 0.55, 4.6, 30
 _BOLD: dict[str, Any] = {**TEXT, "fontweight": "bold"}
 
