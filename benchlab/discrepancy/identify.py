@@ -66,6 +66,7 @@ def identify(
     span = principal(anything, 0.02)
     left_over = _left_over(problem, best, forms, anything, span, noise, rules)
     smaller: list[Fit] = []
+    alike: list[Fit] = []
     while len(best.names) < rules.most:
         if _further(problem, best, forms, bank, noise, rules) > rules.further:
             break
@@ -74,6 +75,8 @@ def identify(
         more = [one for one in more if _worth(problem, one, best, rules)]
         if not more:
             break
+        if alike := _lookalikes(problem, more[0], tried, bare, rules):
+            break
         rest = _left_over(problem, more[0], more_forms, anything, span, noise, rules)
         if rest.p < rules.adequate and not _clears(problem, more[0], best, rest, left_over, rules):
             break  # it does not clear up what was left: no effect that is missing, but the form of the one that is there
@@ -81,7 +84,7 @@ def identify(
         tried, forms, best, left_over = more, more_forms, more[0], rest
     p_left, share = left_over.p, share_explained(bare, best, left_over)
     enough = [one for one in smaller if p_enough(problem, one, best)[0] > rules.rival]
-    rivals = (*(one for one in tried if in_set(problem, one, best, bare, rules)), *enough)
+    rivals = (*(one for one in tried if in_set(problem, one, best, bare, rules) or one in alike), *enough)
     tried = [*tried, *smaller]
     verdict = "named" if len(rivals) == 1 else "ambiguous"
     if (p_left < rules.doubtful and share < rules.half) or (
@@ -174,6 +177,17 @@ def _worth(problem: Problem, more: Fit, best: Fit, rules: Rules) -> bool:
     if moved > needed * _rms(before):
         return True
     return len(best.names) == 1 and moved > max(rules.moves_left * _rms(left), rules.moves_least * _rms(before))
+
+
+def _lookalikes(problem: Problem, more: Fit, tried: Sequence[Fit], bare: Fit, rules: Rules) -> list[Fit]:
+    """Where there is one kind of run, the single effects that are no companions of the best but its rivals: each explains about what the
+    best one does, and both together little more: the truth is one of them, in a form between the two. One loop does not tell two."""
+    best = tried[0]
+    gained = bare.misfit - best.misfit
+    if len(problem.features.kinds) > 1 or len(best.names) > 1 or best.misfit - more.misfit > rules.together * gained:
+        return []
+    added = set(more.names) - set(best.names)
+    return [one for one in tried if set(one.names) <= added and bare.misfit - one.misfit > rules.alone * gained]
 
 
 def _clears(problem: Problem, more: Fit, best: Fit, rest: Left, left: Left, rules: Rules) -> bool:

@@ -17,6 +17,8 @@ class Rules:
     share: explained share from which one, two, three effects are named although something is left.
     moves: smallest RMS by which a second, a third effect must move the predictions, as a share of the gap's. moves_left, moves_least: a
     second effect also as a share of that of the gap that is left, and then of the gap's.
+    alone, together: of one kind of run, a further effect that alone explains this share of what the best does, where both together
+    explain no more than the second share beyond it, is a rival.
     clears: where something is left beside a larger model, it must have fallen to this share of what was left before.
     most: effects in one model. beam, near: fits to which a further effect is added, if within this share of what the best explains.
     tries: effects that are tried beside each.
@@ -35,6 +37,8 @@ class Rules:
     moves: tuple[float, ...] = (0.25, 0.4)
     moves_left: float = 0.6
     moves_least: float = 0.1
+    alone: float = 0.7
+    together: float = 0.15
     clears: float = 0.5
     most: int = 3
     beam: int = 3
