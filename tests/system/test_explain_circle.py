@@ -22,7 +22,7 @@ from benchlab.workflows.explain_measured import explain_measured
 from benchlab.workflows.explain_twin import TwinLab
 from tests.unit.discrepancy.scenes import base
 
-SEED = 11
+SEED, FRAMES_PER_S = 11, 6
 PROTOCOL = """\
 title: One cycle
 limit_MPa: 0.35
@@ -47,7 +47,7 @@ def circle(folder: Path, name: str, film: bool) -> Loop:
     hidden = replace(
         read_twin(None),
         effects={name: EFFECTS[name](**{parameter: size})},
-        camera=Camera(frames_per_s=6, width_px=480, height_px=360),
+        camera=Camera(frames_per_s=FRAMES_PER_S, width_px=480, height_px=360),
     )
     settings = LoopSettings(folder / "loop", samples=3, rounds=1, protocol=protocol)
     return explain_loop(settings, TwinLab(base(2), hidden, SEED, film), base(2), explained)
@@ -83,4 +83,4 @@ def check_tables(folder: Path, film: bool) -> None:
     assert isinstance(measured, Measured) and measured.simulated and len(measured.runs) == 6
     assert not list(folder.rglob("*.truth.csv"))
     assert len(list((folder / "seen").glob("*.h5"))) == 6 * film
-    assert all(np.diff(run.time_s) == pytest.approx(0.1, abs=1e-3) for run in measured.runs)
+    assert all(np.diff(run.time_s) == pytest.approx(1 / FRAMES_PER_S, abs=1e-3) for run in measured.runs)
