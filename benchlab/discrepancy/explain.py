@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import operator
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +12,7 @@ from benchlab.discrepancy.base import Base
 from benchlab.discrepancy.candidates import p_enough
 from benchlab.discrepancy.describe import NOT_JUDGED, described
 from benchlab.discrepancy.effects.effect import Effect
-from benchlab.discrepancy.explanation import Curves, Explanation, Found, Gap, Tried
+from benchlab.discrepancy.explanation import Curves, Explanation, Found, Gap, HeldOut, Tried
 from benchlab.discrepancy.fit import nothing
 from benchlab.discrepancy.heldout import held_out, noise_floor, together
 from benchlab.discrepancy.identify import Identified, gained_share, identify
@@ -60,8 +61,10 @@ def explain(
     gap = gaps(problem, bare)
     p = gap_p(problem, bare, generator) if tested else np.full(len(gap), np.nan)
     tell("held-out samples, designs and rates")
-    parts = held_out(problem, found.best) if tested else ()
-    parts = tuple(part for part in parts if part.kind == "design" or not summary)
+    parts = _held_out(problem, found, summary) if tested else ()
+    if note := _no_better(found, parts, summary):
+        nobody = Identified("unexplained", nothing(problem), (), (), (), found.p_gap, found.p_left, 0.0)
+        found, parts, warnings = nobody, _held_out(problem, nobody, summary), (*warnings, note)
     after = gaps(problem, problem.cells(found.best.actives))
     explanation = Explanation(
         verdict=found.verdict,
@@ -84,6 +87,21 @@ def explain(
         left_out=_left_out(measured, base, problem),
     )
     return Explained(explanation, problem, found)
+
+
+def _held_out(problem: Problem, found: Identified, summary: bool) -> tuple[HeldOut, ...]:
+    return tuple(part for part in held_out(problem, found.best) if part.kind == "design" or not summary)
+
+
+def _no_better(found: Identified, parts: Sequence[HeldOut], summary: bool) -> str:
+    """Why what fits best is not named: it does not predict what the fit has not seen. Empty where it does, or that is not known."""
+    if found.verdict not in ("named", "ambiguous"):
+        return ""
+    kind = "design" if summary else "sample"
+    before, after = (together(parts, kind, operator.attrgetter(name)) for name in ("before", "after"))
+    names = " and ".join(found.best.names)
+    what = f"{names} fits best and is not named: held-out {kind}s are predicted no better with it ({before:.3g} → {after:.3g})"
+    return what if after >= before else ""
 
 
 def _cannot_show(effect: Effect, problem: Problem) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -81,7 +81,7 @@ def noise_floor(problem: Problem, where: NDArray[np.bool_] | None = None) -> flo
     return float(np.sqrt(np.mean(off**2 * n[usable] / (n[usable] - 1))))
 
 
-def together(parts: tuple[HeldOut, ...], kind: str, value: Callable[[HeldOut], float]) -> float:
+def together(parts: Sequence[HeldOut], kind: str, value: Callable[[HeldOut], float]) -> float:
     """RMS over the parts of one kind."""
     found = np.array([value(part) for part in parts if part.kind == kind])
     found = found[np.isfinite(found)]

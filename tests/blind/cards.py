@@ -171,7 +171,12 @@ def cases(card: str) -> tuple[Case, ...]:
     """All cases of a card: tune, calibrate, score, or pairs alone."""
     seeds = iter(range(FIRST_SEED[card], FIRST_SEED[card] + 1_000_000))
     rng = np.random.default_rng(FIRST_SEED[card])
-    build = {"tune": (40, 1, 3, 18, 1), "calibrate": (280, 0, 0, 0, 0), "score": (170, 4, 9, 66, 3), "pairs": (0, 0, 0, 0, 3)}
+    build = {
+        "tune": (40, 1, 3, 18, 1),
+        "calibrate": (280, 0, 0, 0, 0),
+        "score": (170, 4, 9, 66, 3),
+        "pairs": (0, 0, 0, 0, 3),
+    }
     nulls, singles, unknowns, twos, pairs = build[card]
     found = [*_nulls(nulls, rng), *_singles(singles, rng), *_unknowns(unknowns, rng), *_twos(twos, rng)]
     found += _pairs(pairs, rng)
