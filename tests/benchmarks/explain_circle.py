@@ -24,6 +24,7 @@ from benchlab.actuator import ShellDesign
 from benchlab.discrepancy.base import Base
 from benchlab.discrepancy.experiment import BenchLimits
 from benchlab.discrepancy.explanation import Explanation
+from benchlab.errors import BenchError
 from benchlab.io.layup_file import read_layup
 from benchlab.io.measured_table import read_measured
 from benchlab.io.twin_file import read_twin
@@ -111,6 +112,13 @@ def judged(case: Case, found: Explanation) -> str:
     return "right" if sets == [{case.name}] else "in the set"
 
 
+def stopped(case: Case, error: BenchError, took_s: float) -> str:
+    """The row of a case in which the run's own watch saw that something was wrong, and vented."""
+    drawn = ", ".join(f"{name} {value:.3g}" for name, value in case.parameters.items())
+    what = error.what.split(";")[0].split(", or")[0]
+    return f"{case.name or 'nothing'} | {drawn} | no data | {what} | stopped | – | {took_s:.0f} |"
+
+
 def told(case: Case, found: Explanation, took_s: float) -> str:
     names = " or ".join("+".join(names) for names in found.rivals) or "+".join(effect.name for effect in found.effects)
     drawn = ", ".join(f"{name} {value:.3g}" for name, value in case.parameters.items())
@@ -140,7 +148,7 @@ it, and the tables that come out are all that the explanation sees. The protocol
 way, on a machine that did other things too; they measure nothing.
 
 `right`: that name alone, or `agree` where nothing is missing. `in the set`: among rivals that these data cannot tell apart. `missed`: no name. `wrong`:
-another one. `false`: a name where nothing is missing. The lag of the regulator is in the recorded pressure, so that nothing is missing there.
+another one. `false`: a name where nothing is missing. `stopped`: the run's own watch saw that the pressure does not follow, and vented. The lag of the regulator is in the recorded pressure, so that nothing is missing there.
 
 {HEAD}
 {chr(10).join(f"| {number} | {row}" for number, row in sorted(rows.items()))}
@@ -178,8 +186,12 @@ def main() -> None:
         began = time.perf_counter()
         with tempfile.TemporaryDirectory() as folder:
             settings = LoopSettings(Path(folder, "loop"), samples=given.samples, rounds=given.rounds)
-            loop = explain_loop(settings, TwinLab(base, case.twin, given.seed, given.film), base, explained)
-        rows[number] = told(case, loop.explanation, time.perf_counter() - began)
+            try:
+                loop = explain_loop(settings, TwinLab(base, case.twin, given.seed, given.film), base, explained)
+            except BenchError as error:
+                rows[number] = stopped(case, error, time.perf_counter() - began)
+            else:
+                rows[number] = told(case, loop.explanation, time.perf_counter() - began)
         print(f"| {number} | {rows[number]}", flush=True)
         if given.out:
             given.out.write_text(page(rows, how), encoding="utf-8")
