@@ -72,6 +72,7 @@ class TwinLab:
         return f"simulated, not measured: a twin, seed {self.seed}, {base_words(self.base)}; {self.scatter.words}"
 
     def measure(self, wanted: Wanted) -> Run:
+        wanted = self._mounted(wanted)
         twin = self.twin(wanted)
         settings = RunSettings(bench="twin", out=wanted.folder, name=wanted.stem, fast=True, max_duration_s=LONGEST_S)
         prepared = prepare(str(wanted.protocol), settings)
@@ -79,6 +80,11 @@ class TwinLab:
         driven, journal = driven_whole(replace(prepared, twin=twin, curve=twin.curve, bench=bench))
         see = self._filmed if self.film else self._seen
         return run_of(wanted, journal, *see(wanted, driven.truth, twin, journal), start_s=None, ordered=False)
+
+    def _mounted(self, wanted: Wanted) -> Wanted:
+        """With the mounting that a twin has where none is asked for, so that what is measured tells it."""
+        weight = self.hidden.effect(Gravity) or Gravity()
+        return replace(wanted, mounting_deg=float(weight.mount_deg)) if math.isnan(wanted.mounting_deg) else wanted
 
     def twin(self, wanted: Wanted) -> TwinSettings:
         """The twin of a sample, mounted as wanted. A sample is the same in each run, its noise is not."""
