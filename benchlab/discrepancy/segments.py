@@ -16,8 +16,14 @@ TOLERANCE = 0.02
 HOLD = 0.03
 """A piece that changes by less than this share of the range, and lasts, is a hold."""
 
-BLUNT = 0.15
+BLUNT = 0.3
 """A stop shorter than this share of the ramps beside it is a blunt turn."""
+
+BLUNTER, SCRAP, FEW = 0.6, 0.1, 8
+"""The same of a stop in which the pressure moves, as it does behind a lag, and of ramps over less than SCRAP of the range: noise there.
+Of FEW readings at most, one longer piece beside it is enough: its other neighbour may be such a scrap itself."""
+
+STOPS = ("hold", "rest")
 
 MOST_PIECES = 200
 """A run with more is no ramps and holds; it is taken as a whole (chosen)."""
@@ -63,20 +69,30 @@ def segments_of(time_s: FloatArray, pressure_MPa: FloatArray) -> list[Segment]:
             merged[-1] = (merged[-1][0], last, direction)
         else:
             merged.append((first, last, direction))
-    return _numbered(time_s, pressure_MPa, _without_blunt_turns(time_s, pressure_MPa, merged))
+    return _numbered(time_s, pressure_MPa, _without_blunt_turns(time_s, pressure_MPa, merged, noise))
 
 
 def _without_blunt_turns(
-    time_s: FloatArray, pressure_MPa: FloatArray, pieces: list[tuple[int, int, str]]
+    time_s: FloatArray, pressure_MPa: FloatArray, pieces: list[tuple[int, int, str]], noise_MPa: float
 ) -> list[tuple[int, int, str]]:
-    """Stops that are short beside the ramps around them are no holds: the turn is at their highest (lowest) point."""
-    kept = list(pieces)
+    """Stops and scraps that are short beside the pieces around them are none: the turn is at their highest (lowest) point."""
+    kept, span = list(pieces), float(np.ptp(pressure_MPa))
+
+    def lasts(piece: tuple[int, int, str]) -> float:
+        return float(time_s[piece[1]] - time_s[piece[0]])
+
+    def none_beside(piece: tuple[int, int, str], sides: list[float], through: bool) -> bool:
+        moves = float(np.ptp(pressure_MPa[piece[0] : piece[1] + 1]))
+        if piece[2] not in STOPS and moves >= SCRAP * span:
+            return False
+        if through or (piece[2] in STOPS and moves < HOLD * span + 6 * noise_MPa):
+            return lasts(piece) < BLUNT * (sum(sides) if through else min(sides))
+        return lasts(piece) < BLUNTER * (max(sides) if piece[1] - piece[0] <= FEW else min(sides))
+
     i = 1
     while i < len(kept) - 1:
-        (first, last, direction), (start, _, before), (_, end, after) = kept[i], kept[i - 1], kept[i + 1]
-        sides = (time_s[first] - time_s[start], time_s[end] - time_s[last])
-        beside = sum(sides) if before == after else min(sides)
-        if direction not in ("hold", "rest") or time_s[last] - time_s[first] >= BLUNT * beside:
+        (first, last, _), (start, _, before), (_, end, after) = kept[i], kept[i - 1], kept[i + 1]
+        if not none_beside(kept[i], [lasts(kept[i - 1]), lasts(kept[i + 1])], before == after):
             i += 1
             continue
         if before == after:
@@ -84,8 +100,10 @@ def _without_blunt_turns(
             i = max(i - 1, 1)
             continue
         piece = pressure_MPa[first : last + 1]
-        turn = first + int(np.argmax(piece) if before == "loading" else np.argmin(piece))
+        turn = first + int(np.argmax(piece) if before == "loading" or after == "unloading" else np.argmin(piece))
         kept[i - 1 : i + 2] = [(start, turn, before), (turn, end, after)]
+    while len(kept) > 1 and kept[0][1] - kept[0][0] <= FEW and none_beside(kept[0], [lasts(kept[1])], False):
+        kept[:2] = [(kept[0][0], kept[1][1], kept[1][2])]
     return kept
 
 
