@@ -19,8 +19,8 @@ HOLD = 0.03
 BLUNT = 0.3
 """A stop shorter than this share of the ramps beside it is a blunt turn."""
 
-BLUNTER, SCRAP, FEW = 0.6, 0.1, 8
-"""The same of a stop in which the pressure moves, as it does behind a lag, and of ramps over less than SCRAP of the range: noise there.
+BLUNTER, SCRAP, FEW = 0.6, 0.2, 8
+"""The same of a stop in which the pressure moves, as it does behind a lag, and of ramps over less than SCRAP of a ramp beside: noise there.
 Of FEW readings at most, one longer piece beside it is enough: its other neighbour may be such a scrap itself."""
 
 STOPS = ("hold", "rest")
@@ -81,18 +81,22 @@ def _without_blunt_turns(
     def lasts(piece: tuple[int, int, str]) -> float:
         return float(time_s[piece[1]] - time_s[piece[0]])
 
-    def none_beside(piece: tuple[int, int, str], sides: list[float], through: bool) -> bool:
-        moves = float(np.ptp(pressure_MPa[piece[0] : piece[1] + 1]))
-        if piece[2] not in STOPS and moves >= SCRAP * span:
+    def moves(piece: tuple[int, int, str]) -> float:
+        return float(np.ptp(pressure_MPa[piece[0] : piece[1] + 1]))
+
+    def none_beside(piece: tuple[int, int, str], around: list[tuple[int, int, str]], through: bool) -> bool:
+        sides, moved = [lasts(one) for one in around], moves(piece)
+        largest = max((moves(one) for one in around if one[2] not in STOPS), default=0.0)
+        if piece[2] not in STOPS and moved >= SCRAP * largest:
             return False
-        if through or (piece[2] in STOPS and moves < HOLD * span + 6 * noise_MPa):
+        if through or (piece[2] in STOPS and moved < HOLD * span + 6 * noise_MPa):
             return lasts(piece) < BLUNT * (sum(sides) if through else min(sides))
         return lasts(piece) < BLUNTER * (max(sides) if piece[1] - piece[0] <= FEW else min(sides))
 
     i = 1
     while i < len(kept) - 1:
         (first, last, _), (start, _, before), (_, end, after) = kept[i], kept[i - 1], kept[i + 1]
-        if not none_beside(kept[i], [lasts(kept[i - 1]), lasts(kept[i + 1])], before == after):
+        if not none_beside(kept[i], [kept[i - 1], kept[i + 1]], before == after):
             i += 1
             continue
         if before == after:
@@ -102,7 +106,7 @@ def _without_blunt_turns(
         piece = pressure_MPa[first : last + 1]
         turn = first + int(np.argmax(piece) if before == "loading" or after == "unloading" else np.argmin(piece))
         kept[i - 1 : i + 2] = [(start, turn, before), (turn, end, after)]
-    while len(kept) > 1 and kept[0][1] - kept[0][0] <= FEW and none_beside(kept[0], [lasts(kept[1])], False):
+    while len(kept) > 1 and kept[0][1] - kept[0][0] <= FEW and none_beside(kept[0], [kept[1]], False):
         kept[:2] = [(kept[0][0], kept[1][1], kept[1][2])]
     return kept
 

@@ -277,8 +277,11 @@ def _expected(proposed: NextExperiment) -> str:
 
 
 def run_command(proposed: NextExperiment) -> str:
-    """The command line that runs the protocol; one that has no file yet is called UNWRITTEN."""
+    """The command line that runs the protocol; one that has no file yet is called UNWRITTEN, and of one that has only a name it is said
+    how to get it."""
     written = "\n" not in proposed.protocol
+    if written and not proposed.protocol.endswith((".yaml", ".yml")):
+        return f"with --out its protocol ({cut(proposed.protocol, 200)}) is written, for `benchlab run`"
     return f"benchlab run {shlex.quote(cut(proposed.protocol, 200) if written else UNWRITTEN)} --out results"
 
 

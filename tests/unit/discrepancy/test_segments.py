@@ -50,3 +50,11 @@ def test_noise_at_a_blunt_corner_makes_no_pieces() -> None:
         seen.add(tuple(s.direction for s in found))
     ramps = ("loading", "unloading", "loading", "hold", "unloading", "rest", "loading", "unloading")
     assert {pieces[:8] for pieces in seen} == {ramps} and {pieces[8:] for pieces in seen} <= {(), ("rest",)}
+
+
+def test_small_steps_of_a_staircase_are_steps() -> None:
+    corners_s = [0.0, 0.5, *(t for n in range(1, 13) for t in (5.0 * n, 5.0 * n + 0.5))]
+    levels = [0.0, *(0.025 * n for n in range(1, 13) for _ in (0, 1)), 0.325]
+    found = segments_of(*drawn(corners_s, levels, 0.0))
+    held = [s.end_MPa for s in found if s.direction == "hold"]
+    assert held == pytest.approx(np.arange(1, 13) * 0.025, abs=0.01) and len(found) == 25
