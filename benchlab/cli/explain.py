@@ -119,7 +119,7 @@ def explain(measured: tuple[Path, ...], loop: bool, strict: bool, as_json: bool,
       report.html   the story: where, what, rivals, gap before and after, held-out data, what is left, what to do next
       explain.png   the verdict, the map of the gap and the largest gaps before and after, in one picture
       explain.json  all of it as numbers, as --json prints it
-      model.yaml    where something was found, the simulation with what it lacked: for `benchlab simulate --model`, `sweep`, `run`, and a further `explain`
+      model.yaml    where something was found: the simulation with it, for `benchlab simulate --model`, `sweep`, `run`, `explain --model`
       next_*.yaml   the protocol to run next, for `benchlab run`
       tables/, figures/
 
