@@ -109,6 +109,8 @@ def _cannot_show(effect: Effect, problem: Problem) -> str:
     quantities = problem.features.quantities
     if not set(effect.seen_in) & set(quantities):
         return f"it does not show in {' and '.join(quantities)}"
+    if lacking := [curve for curve in effect.needs if not problem.scene.has(curve)]:
+        return f"the simulation has no {' and no '.join(lacking)}"
     return effect.cannot_show(problem.scene) or ("" if problem.scatter.freedom > 0 else NOT_JUDGED)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchlab.discrepancy.measured import Run
-from benchlab.discrepancy.segments import Segment
+from benchlab.discrepancy.segments import STOPS, Segment
 from benchlab.units import FloatArray
 
 BINS = 8
@@ -101,7 +101,7 @@ def _intervals(run: Run, segment: Segment, top_MPa: float) -> list[tuple[int, in
         inside = np.arange(segment.first, segment.last + 1)
     if len(inside) == 0:
         return []
-    if segment.direction in ("hold", "rest"):
+    if segment.direction in STOPS:
         since = (run.time_s[inside] - run.time_s[segment.first]) / max(segment.duration_s, 1e-12)
         number = np.clip(np.searchsorted(HOLD_EDGES, since, side="right") - 1, 0, len(HOLD_EDGES) - 2)
     else:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import itertools
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -55,7 +56,7 @@ class Fixture:
 
 
 @dataclass(frozen=True)
-class Curves:
+class Curves(ABC):
     """Response curves of a simulated actuator; arrays are (P,), one value a pressure that was reached.
 
     angle_rad: between the two ends, k·(al − 2 cap). curvature_per_mm: 1/radius of the strip's line, so that the angle is
@@ -88,9 +89,9 @@ class Curves:
     def blocked_force_N(self) -> FloatArray:
         return self.fixture.force_N(self.pressure_MPa, self.moment_Nmm)
 
+    @abstractmethod
     def bending_stiffness_Nmm2(self) -> FloatArray:
         """(P,): dM/dk at constant pressure where the actuator bends freely."""
-        raise NotImplementedError
 
     def columns(self) -> dict[str, FloatArray]:
         """The curves by the names that they have in files."""

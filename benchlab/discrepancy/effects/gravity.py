@@ -49,8 +49,6 @@ class Gravity(Effect):
     def cannot_show(self, scene: Scene) -> str:
         if not scene.lengths_known:
             return UNKNOWN_LENGTH
-        if not scene.has("stiffness_Nmm2"):
-            return "the simulation has no bending stiffness"
         if not np.isfinite(scene.orientation_deg).all():
             return "how the samples were mounted is not known (orientation_deg)"
         return ""

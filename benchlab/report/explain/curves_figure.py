@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchlab.discrepancy.explanation import Curves
+from benchlab.discrepancy.segments import STOPS
 from benchlab.report.document import cut
 from benchlab.report.explain.quantity import Quantity, quantity_of
 from benchlab.report.explain.tables import rms
@@ -64,7 +65,7 @@ def kinds(curves: Curves, quantity: str) -> list[Kind]:
     """One a design, kind of run and, in holds, pressure; in the order of the features."""
     found: dict[tuple[str, str, bool, float], list[int]] = {}
     for i in np.flatnonzero(curves.quantity == quantity):
-        held = str(curves.direction[i]) in ("hold", "rest")
+        held = str(curves.direction[i]) in STOPS
         at = round(float(curves.pressure_MPa[i]), 3) if held else 0.0
         found.setdefault((str(curves.design[i]), str(curves.kind[i]), held, at), []).append(int(i))
     gap = curves.measured - curves.simulated
