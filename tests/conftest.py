@@ -15,6 +15,11 @@ from typing import Any
 import av
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, settings
+
+# How long an example takes is the computer's affair, and how busy it is.
+settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("patient")
 
 Drawing = Callable[[int], np.ndarray]
 

@@ -3,7 +3,6 @@
 import os
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -39,9 +38,7 @@ def test_what_is_no_file_is_never_opened(benchlab, tmp_path, monkeypatch, name) 
 
 def test_a_pipe_is_refused_at_once(benchlab, tmp_path) -> None:
     os.mkfifo(tmp_path / "pipe.mp4")
-    started = time.monotonic()
-    refused(benchlab("analyze", tmp_path / "pipe.mp4"), 3, "not a regular file")
-    assert time.monotonic() - started < 1
+    refused(benchlab("analyze", tmp_path / "pipe.mp4"), 3, "not a regular file")  # whoever opens it waits for ever
     refused(benchlab("analyze", "/dev/zero"), 3, "not a regular file")
 
 

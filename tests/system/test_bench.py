@@ -19,6 +19,7 @@ import pytest
 from benchlab.devices.messages import VENT
 from benchlab.errors import printable
 from benchlab.io.bench_file import read_bench, read_bench_file
+from tests.system.patience import LONG_S, PATIENT, wait_until
 from tests.system.small_nano import MONITOR, REGULATOR, SILENCE_S, SmallNano
 
 BENCH = """name: left
@@ -212,29 +213,29 @@ def test_bad_inputs_130_no_permission_as_the_system_says_it(benchlab, monkeypatc
 def test_bad_inputs_139_a_second_benchlab_on_the_port(benchlab) -> None:
     with SmallNano() as nano:
         arguments = ["bench", "monitor", "--bench", f"serial:{nano.port}", "--json-lines"]
-        first = subprocess.Popen([sys.executable, "-m", "benchlab", *arguments], stdout=subprocess.PIPE, text=True)
+        first = subprocess.Popen([*PATIENT, *arguments], stdout=subprocess.PIPE, text=True)
         assert first.stdout is not None
         assert json.loads(first.stdout.readline())["code"] == 0
         done = benchlab("bench", "vent", "--bench", f"serial:{nano.port}")
         assert done.code == 5 and "in use by another program" in done.err
         first.send_signal(signal.SIGINT)
-        assert first.wait(5) == 0
+        assert first.wait(LONG_S) == 0
         assert benchlab("bench", "vent", "--bench", f"serial:{nano.port}").code == 0
 
 
 class Typist:
     """`benchlab bench calibrate` in a terminal of its own."""
 
-    def __init__(self, folder: Path, *arguments: str) -> None:
+    def __init__(self, folder: Path, *arguments: str, words: tuple[str, ...] = PATIENT) -> None:
         self.pid, self.terminal = pty.fork()
         if self.pid == 0:
             os.chdir(folder)
-            os.execv(sys.executable, [sys.executable, "-m", "benchlab", "bench", "calibrate", *arguments])
+            os.execv(sys.executable, [*words, "bench", "calibrate", *arguments])
         self.seen = ""
 
-    def wait_for(self, text: str, seconds: float = 15.0) -> None:
+    def wait_for(self, text: str) -> None:
         """Until the terminal shows it, after what was shown before."""
-        until = time.monotonic() + seconds
+        until = time.monotonic() + LONG_S
         while text not in self.seen:
             assert time.monotonic() < until, f"no {text!r} in {printable(self.seen)}"
             if select.select([self.terminal], [], [], 0.1)[0]:
@@ -247,9 +248,9 @@ class Typist:
     def type(self, text: str) -> None:
         os.write(self.terminal, text.encode())
 
-    def end(self, seconds: float = 10.0) -> tuple[int, str]:
+    def end(self) -> tuple[int, str]:
         """Exit code, and what was shown last."""
-        until = time.monotonic() + seconds
+        until = time.monotonic() + LONG_S
         while time.monotonic() < until:
             try:
                 if select.select([self.terminal], [], [], 0.1)[0]:
@@ -263,10 +264,10 @@ class Typist:
 COUNTS = 1.1 * 1024 / 4.9
 
 
-def typist(nano: SmallNano, folder: Path, *more: str) -> Typist:
+def typist(nano: SmallNano, folder: Path, *more: str, words: tuple[str, ...] = PATIENT) -> Typist:
     arguments = ("--bench", f"serial:{nano.port}", "--gauge", "Keller LEO 2", "--points", "4", "--max-MPa", "0.29",
                  "--settle-s", "0.1")  # fmt: skip
-    return Typist(folder, *arguments, *more)
+    return Typist(folder, *arguments, *more, words=words)
 
 
 def test_a_calibration_is_typed(tmp_path: Path) -> None:
@@ -346,10 +347,8 @@ def test_a_killed_calibration_is_vented_by_the_firmware(tmp_path: Path) -> None:
         lab = typist(nano, tmp_path, "--supply-V", "4.9", "--unit", "kPa")
         lab.wait_for("1/7 up")
         os.kill(lab.pid, signal.SIGKILL)
-        killed = time.monotonic()
-        while nano.armed and time.monotonic() - killed < 1:
-            time.sleep(0.005)
-        assert not nano.armed and nano.code == 0 and nano.vents[-1] == "silence"
+        wait_until(lambda: not nano.armed)
+        assert nano.code == 0 and nano.vents[-1] == "silence"
         lab.end()
 
 
@@ -369,7 +368,8 @@ def test_a_firmware_with_a_lower_ceiling_is_calibrated_below_it(tmp_path: Path) 
 
 def test_a_bench_that_is_lost_ends_the_asking_at_once(tmp_path: Path) -> None:
     with SmallNano() as nano:
-        lab = typist(nano, tmp_path, "--supply-V", "4.9", "--unit", "kPa")
+        hasty = (sys.executable, "-m", "benchlab")
+        lab = typist(nano, tmp_path, "--supply-V", "4.9", "--unit", "kPa", words=hasty)
         lab.wait_for("1/7 up")
         nano.deaf_to = (1, 2, 3, 4, 5)
         code, shown = lab.end()

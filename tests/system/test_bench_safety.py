@@ -7,7 +7,6 @@ import pty
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -15,6 +14,7 @@ import pytest
 
 from benchlab.io.bench_file import read_bench
 from benchlab.io.journal import read_journal
+from tests.system.patience import LATE, LONG_S, PATIENT, be_patient, wait_until
 from tests.system.small_nano import SmallNano
 
 CALIBRATION = """name: left
@@ -47,14 +47,15 @@ def files(tmp_path: Path) -> tuple[Path, Path]:
 
 
 @pytest.fixture
-def nano(files: tuple[Path, Path]) -> Iterator[SmallNano]:
+def nano(files: tuple[Path, Path], monkeypatch: pytest.MonkeyPatch) -> Iterator[SmallNano]:
+    be_patient(monkeypatch)
     with SmallNano(read_bench(files[0]).ceiling_code) as nano:
         yield nano
 
 
 def words(nano: SmallNano, bench: Path, protocol: Path) -> list[str]:
     where = ["--bench", f"serial:{nano.port}", "--calibration", str(bench), "--name", "r", "--out", str(bench.parent)]
-    return ["run", str(protocol), *where]
+    return ["run", str(protocol), *where, *LATE]
 
 
 def stop_of(folder: Path) -> dict:
@@ -149,9 +150,12 @@ def test_an_old_calibration_is_told_with_the_run(benchlab, nano: SmallNano, file
     assert done.code == 0 and "calibrate it at least once a year" in done.err
 
 
-def test_a_vent_that_nobody_confirms_is_told_loudly(benchlab, nano: SmallNano, files, tmp_path: Path) -> None:
+def test_a_vent_that_nobody_confirms_is_told_loudly(
+    benchlab, nano: SmallNano, files, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     from benchlab.devices.messages import SET, VENT
 
+    monkeypatch.setattr("benchlab.devices.conversation.TRY_S", 0.1)
     answer = nano.answer
 
     def deaf_once_armed(frame) -> None:
@@ -168,21 +172,16 @@ def test_a_vent_that_nobody_confirms_is_told_loudly(benchlab, nano: SmallNano, f
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL, signal.SIGSTOP])
 def test_every_signal_ends_vented(nano: SmallNano, files, tmp_path: Path, number: signal.Signals) -> None:
     files[1].write_text(PROTOCOL.replace("0.5", "30"))
-    running = subprocess.Popen([sys.executable, "-m", "benchlab", *words(nano, *files)], stderr=subprocess.DEVNULL)
+    running = subprocess.Popen([*PATIENT, *words(nano, *files)], stderr=subprocess.DEVNULL)
     try:
-        until = time.monotonic() + 30
-        while nano.pressure_MPa < 0.99 * HELD_MPA:
-            assert time.monotonic() < until and running.poll() is None
-            time.sleep(0.01)
+        wait_until(lambda: nano.pressure_MPa >= 0.99 * HELD_MPA, lambda: running.poll() is None)
         running.send_signal(number)
-        sent = time.monotonic()
-        while nano.armed and time.monotonic() - sent < 2:
-            time.sleep(0.005)
-        assert time.monotonic() - sent < 1 and nano.code == 0  # how soon is measured with the true firmware
+        wait_until(lambda: not nano.armed)  # how soon is measured with the true firmware
+        assert nano.code == 0
         by_firmware = number in (signal.SIGKILL, signal.SIGSTOP)
         assert (nano.vents[-1] == "silence") == by_firmware
         if not by_firmware:
-            assert running.wait(10) == 130 and stop_of(tmp_path)["vented"]
+            assert running.wait(LONG_S) == 130 and stop_of(tmp_path)["vented"]
         else:
             assert not read_journal(tmp_path / "r.journal").complete
     finally:
@@ -194,14 +193,11 @@ def test_a_closed_terminal_ends_vented(nano: SmallNano, files, tmp_path: Path) -
     files[1].write_text(PROTOCOL.replace("0.5", "30"))
     pid, terminal = pty.fork()
     if pid == 0:
-        os.execv(sys.executable, [sys.executable, "-m", "benchlab", *words(nano, *files)])
-    until = time.monotonic() + 30
-    while nano.pressure_MPa < 0.99 * HELD_MPA and time.monotonic() < until:
-        time.sleep(0.01)
+        os.execv(sys.executable, [*PATIENT, *words(nano, *files)])
+    wait_until(lambda: nano.pressure_MPa >= 0.99 * HELD_MPA)
     assert nano.armed
     os.close(terminal)
-    while nano.armed and time.monotonic() < until:
-        time.sleep(0.005)
+    wait_until(lambda: not nano.armed)
     assert nano.code == 0 and nano.vents[-1] == "vent"
     os.waitpid(pid, 0)
     assert stop_of(tmp_path)["reason"] == "hung up"
@@ -212,9 +208,7 @@ def test_ctrl_c_while_the_port_does_not_answer_leaves_at_once_or_soon(nano: Smal
     running = subprocess.Popen(
         [sys.executable, "-m", "benchlab", *words(nano, *files)], stderr=subprocess.PIPE, text=True
     )
-    until = time.monotonic() + 20
-    while not nano.heard and time.monotonic() < until:
-        time.sleep(0.01)
+    wait_until(lambda: nano.heard)
     running.send_signal(signal.SIGINT)
-    assert running.wait(8) in (5, 130)
+    assert running.wait(LONG_S) in (5, 130)
     assert nano.highest_code == 0

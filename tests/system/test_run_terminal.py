@@ -9,9 +9,11 @@ import subprocess
 import sys
 import termios
 import time
+from collections.abc import Callable
 from pathlib import Path
 
-from benchlab.io.journal import read_journal
+from benchlab.io.journal import Journal, read_journal
+from tests.system.patience import LATE, LONG_S, PATIENT, wait_until
 
 PROTOCOL = """\
 title: A long hold
@@ -30,7 +32,8 @@ class Terminal:
         self.ours, self.theirs = os.openpty()
         termios.tcsetwinsize(self.theirs, (24, 90))
         self.before = termios.tcgetattr(self.theirs)
-        run = [sys.executable, "-m", "benchlab", "run", folder / "long.yaml", "--out", folder, "--name", "a", "--json"]
+        run = [*PATIENT, "run", folder / "long.yaml", "--out", folder, "--name", "a", "--json", *LATE]
+        self.journal = folder / "a.journal"
         env = {**os.environ, "TERM": "xterm"}
         script = (
             "import os, sys, fcntl, termios; fcntl.ioctl(0, termios.TIOCSCTTY, 0); os.execv(sys.argv[1], sys.argv[1:])"
@@ -46,18 +49,21 @@ class Terminal:
         )
         self.seen = ""
 
-    def until(self, words: str, seconds: float = 20.0) -> None:
-        end = time.monotonic() + seconds
+    def until(self, words: str) -> None:
+        end = time.monotonic() + LONG_S
         while words not in self.seen:
             assert time.monotonic() < end, self.seen[-2000:]
             if select.select([self.ours], [], [], 0.1)[0]:
                 self.seen += os.read(self.ours, 65536).decode()
 
+    def until_journal(self, so: Callable[[Journal], bool]) -> None:
+        wait_until(lambda: so(read_journal(self.journal)), lambda: self.process.poll() is None)
+
     def press(self, key: str) -> None:
         os.write(self.ours, key.encode())
 
     def ended(self) -> dict:
-        out, _ = self.process.communicate(timeout=30)
+        out, _ = self.process.communicate(timeout=LONG_S)
         return json.loads(out)
 
 
@@ -70,7 +76,7 @@ def test_keys_pause_resume_and_stop_and_the_terminal_is_left_as_it_was(tmp_path:
     terminal.press("p")
     terminal.until("PAUSED, holding: p goes on, q stops")
     terminal.press("p")
-    time.sleep(0.4)
+    terminal.until_journal(lambda journal: journal.events[-1]["kind"] == "resume")
     terminal.press("q")
     found = terminal.ended()
     assert (found["reason"], found["vented"], terminal.process.returncode) == ("quit", True, 130)
@@ -92,9 +98,7 @@ def test_a_terminal_that_nobody_reads_holds_up_nothing(tmp_path: Path) -> None:
     terminal.until("hold 0.2 MPa for 30 s")
     ticks = len(read_journal(tmp_path / "a.journal").samples)
     termios.tcflow(terminal.theirs, termios.TCOOFF)  # as Ctrl-S does
-    time.sleep(1.0)
-    during = read_journal(tmp_path / "a.journal").samples
-    assert len(during) >= ticks + 80
+    terminal.until_journal(lambda journal: len(journal.samples) >= ticks + 80)
     termios.tcflow(terminal.theirs, termios.TCOON)
     terminal.press("q")
     assert terminal.ended()["reason"] == "quit"

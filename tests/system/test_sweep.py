@@ -3,7 +3,6 @@
 import csv
 import subprocess
 import sys
-import time
 
 import h5py
 import numpy as np
@@ -14,6 +13,7 @@ from benchlab.io.layup_file import DEFAULT_LAYUP, read_layup
 from benchlab.io.sweep_file import read_sweep_file
 from benchlab.simulation.actuator_response import actuator_response
 from tests.system.models import beam_model
+from tests.system.patience import interrupted_at
 
 FAST = ("--pressure-MPa", "0.1,0.2", "--no-blocked", "--jobs", "1")
 
@@ -143,20 +143,14 @@ def test_files_of_others_are_not_replaced(benchlab, tmp_path):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 def test_interrupted_it_keeps_what_is_done_and_goes_on_from_there(benchlab, tmp_path):
-    import signal
-
-    command = ("sweep", "--slw-mm", "1:30", *FAST, "--out", str(tmp_path))
-    process = subprocess.Popen([sys.executable, "-m", "benchlab", *command], stderr=subprocess.PIPE, text=True)
-    time.sleep(4)
-    process.send_signal(signal.SIGINT)
-    said = process.communicate(timeout=60)[1]
-    if process.returncode == 0:
-        pytest.skip("it was done before it could be interrupted")
-    assert process.returncode == 130 and "marked partial" in said
-    path = tmp_path / "sweep_tw3_slw1-30.h5"
+    command = ("sweep", "--slw-mm", "4:10", *FAST, "--out", str(tmp_path))
+    process = subprocess.run([*interrupted_at(3), *command], capture_output=True, text=True, check=False)
+    said = process.stderr
+    assert process.returncode == 130 and "marked partial" in said, said
+    path = tmp_path / "sweep_tw3_slw4-10.h5"
     part = read_sweep_file(path)
     kept = sum(map(bool, part.key))
-    assert part.partial and kept < 30 and part.reason.count("not simulated yet") == 30 - kept
+    assert part.partial and kept == 3 and part.reason.count("not simulated yet") == 7 - kept
     done = benchlab(*command, "--json")
     assert done.code == 0 and done.json["reused"] == kept
     assert not read_sweep_file(path).partial and not list(tmp_path.glob(".*"))

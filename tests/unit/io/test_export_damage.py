@@ -16,6 +16,7 @@ from benchlab.io.export_damage import lost_decimals
 from benchlab.io.export_numbers import NO_NUMBER, PADDED, Column
 from benchlab.io.export_text import MAX_COLUMNS, MAX_LINE
 from benchlab.io.machine_export import ExportOptions, MachineExport, export_document, read_machine_export
+from tests.pace import slowness
 
 HEAD = "Time,Extension,Load\n(s),(mm),(N)\n"
 SEMI = HEAD.replace(",", ";")
@@ -221,12 +222,12 @@ def test_a_stated_decimal_sign_makes_lost_decimals_a_warning(tmp_path: Path) -> 
 def test_outsize_files_end_at_once(tmp_path: Path) -> None:
     wide = ",".join(["Load (N)"] * 100_000) + "\n" + ",".join(["1.5"] * 100_000) + "\n"
     long = "1.5," + "9" * 10_000_000
-    started = time.perf_counter()
+    started = time.process_time()
     with pytest.raises(InputError, match=f"line 1: more than {MAX_COLUMNS} columns"):
         read(tmp_path, wide)
     with pytest.raises(InputError, match=f"line 1: line longer than {MAX_LINE} characters"):
         read(tmp_path, long)
-    assert time.perf_counter() - started < 5
+    assert time.process_time() - started < 5 * slowness()
 
 
 def test_compression_keeps_its_sign(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ import re
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 import numpy as np
@@ -19,6 +20,7 @@ from benchlab.io import journal as journal_module
 from benchlab.io import journal_format
 from benchlab.io.journal import KINDS, SAMPLE, UNITS, JournalWriter, read_journal, still_written
 from benchlab.protocol.survey import MAX_TICKS
+from tests.pace import cpu_s, slowness
 from tests.unit.io.journals import STOP, header_of, samples_of, write_journal
 
 EVENTS = {
@@ -222,9 +224,9 @@ def test_a_file_made_to_be_slow_is_given_up(whole, monkeypatch):
     head = whole.read_bytes()[: ends_of(whole.read_bytes())[0]]
     claim = journal_format.HEAD.pack(b"\xf5E", 900_000, 0)
     whole.write_bytes(head + claim * 400_000)
-    began = time.perf_counter()
-    read = read_journal(whole)
-    assert time.perf_counter() - began < 5
+    found = []
+    assert cpu_s(lambda: found.append(read_journal(whole))) < 5 * slowness()
+    (read,) = found
     assert len(read.samples) == 0 and "no whole record found within reach" in read.losses[0].why
 
 
@@ -244,7 +246,9 @@ KEYS = st.text().filter(lambda key: key not in ("kind", "self", "after_samples")
 EVENT = st.tuples(st.sampled_from(KINDS), st.dictionaries(KEYS, JSON, max_size=3))
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
+)
 @given(header=HEADER, records=st.lists(ROW | EVENT, max_size=12))
 def test_whatever_is_written_is_read(tmp_path, header, records):
     path = tmp_path / "any.journal"
@@ -353,7 +357,7 @@ def test_what_the_disk_refuses_in_the_thread_is_told_at_the_next_call(tmp_path, 
     writer = JournalWriter(tmp_path / "a.journal", {})
     row = samples_of().tolist()[0]
     with pytest.raises(InputError, match="input/output error"):
-        for _ in range(200):
+        for _ in range(6000):
             writer.sample(*row)
             time.sleep(0.01)
     assert called
@@ -361,29 +365,31 @@ def test_what_the_disk_refuses_in_the_thread_is_told_at_the_next_call(tmp_path, 
 
 def test_the_disk_is_asked_in_a_thread_of_its_own_and_a_slow_one_holds_nobody_up(tmp_path, monkeypatch):
     monkeypatch.setattr(journal_module, "SYNC_S", 0.01)
-    monkeypatch.setattr(os, "fdatasync", lambda _: time.sleep(0.3), raising=False)
+    asked, all_written, came = threading.Event(), threading.Event(), []
+
+    def slow(_: int) -> None:
+        asked.set()
+        came.append(all_written.wait(60))
+
+    monkeypatch.setattr(os, "fdatasync", slow, raising=False)
     writer = JournalWriter(tmp_path / "a.journal", {})
     row = samples_of().tolist()[0]
-    slowest = 0.0
+    writer.sample(*row)
+    assert asked.wait(60)
     for _ in range(30):
-        began = time.perf_counter()
         writer.sample(*row)
-        slowest = max(slowest, time.perf_counter() - began)
-        time.sleep(0.002)
-    assert slowest < 0.15
+    all_written.set()
     writer.close()
+    assert all(came)  # none of the samples waited for the disk
+    assert len(read_journal(writer.path).samples) == 31
 
 
 def test_a_sample_costs_less_than_30_us(tmp_path):
     writer = JournalWriter(tmp_path / "a.journal", {})
     row = samples_of().tolist()[0]
-    costs = []
-    for _ in range(5000):
-        began = time.perf_counter()
-        writer.sample(*row)
-        costs.append(time.perf_counter() - began)
+    costs = [cpu_s(lambda: [writer.sample(*row) for _ in range(500)]) / 500 for _ in range(10)]
     writer.close()
-    assert np.median(costs) < 30e-6
+    assert min(costs) < 30e-6 * slowness()
 
 
 def test_a_journal_tells_whether_it_is_still_written_and_is_read_meanwhile(tmp_path):
@@ -440,7 +446,9 @@ def test_a_journal_that_is_not_at_its_place_any_more_is_told_in_the_next_sample_
         writer.path.unlink()
     if how.startswith("another"):
         writer.path.write_text("mine")
-    time.sleep(0.2)
+    end = time.monotonic() + 60
+    while writer._trouble is None and time.monotonic() < end:
+        time.sleep(0.01)
     with pytest.raises(InputError, match=r"a\.journal: the journal is not at its place any more") as told:
         writer.sample(*row)
     assert "recover" not in str(told.value) and "no space" not in str(told.value)

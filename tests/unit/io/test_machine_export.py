@@ -76,7 +76,12 @@ def test_an_encoding_that_no_word_tells_is_a_warning(tmp_path: Path) -> None:
         read_machine_export(path, ExportOptions(encoding="utf-8"))
 
 
-@settings(max_examples=80, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=80,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
+)
 @given(
     values=st.lists(st.tuples(*[st.floats(-1e7, 1e7)] * 2), min_size=3, max_size=30),
     separator=st.sampled_from([",", ";", "\t", "|"]),

@@ -1,7 +1,6 @@
 """Pressure records: every way a logger may write one, and every way a file may fail to be one."""
 
 import os
-import time
 
 import h5py
 import numpy as np
@@ -10,6 +9,7 @@ import pytest
 import benchlab.io.pressure
 from benchlab.errors import BenchlabError, InputError, UsageError
 from benchlab.io.pressure import PressureRecord, Ramp, ramp, read_pressure
+from tests.pace import cpu_s, slowness
 
 TIME = [0.0, 0.5, 1.0, 1.5]
 PRESSURE = [0.0, 0.0345, 0.07, 0.35]
@@ -130,9 +130,9 @@ def test_a_file_over_the_size_limit_is_refused_before_it_is_read(tmp_path):
 
 def test_forty_thousand_columns_are_refused_within_a_second(tmp_path):
     path = write(tmp_path / "log.csv", ",".join(["p"] * 40_000) + "\n")
-    start = time.perf_counter()
-    assert "columns" in refusal(path)
-    assert time.perf_counter() - start < 1
+    said = []
+    assert cpu_s(lambda: said.append(refusal(path))) < slowness()
+    assert "columns" in said[0]
 
 
 def test_a_last_row_cut_while_writing_is_left_out_and_counted(tmp_path):
@@ -265,10 +265,9 @@ def test_no_cell_of_a_good_file_is_invented_when_it_is_cut_anywhere(tmp_path):
 def test_reading_is_quick(tmp_path):
     n = 50_000
     text = "time_s,pressure_kPa\n" + "".join(f"{i / 100:.2f},{i % 350}.5\n" for i in range(n))
-    start = time.perf_counter()
-    record = read_pressure(write(tmp_path / "log.csv", text))
-    assert time.perf_counter() - start < 3
-    assert len(record.time_s) == n
+    path, found = write(tmp_path / "log.csv", text), []
+    assert cpu_s(lambda: found.append(read_pressure(path))) < 3 * slowness()
+    assert len(found[0].time_s) == n
 
 
 def test_the_examples_in_the_docstrings_hold():

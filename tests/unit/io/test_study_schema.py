@@ -8,6 +8,7 @@ import pytest
 from benchlab.errors import InputError, UsageError
 from benchlab.io.analysis_ranges import RANGES
 from benchlab.io.study_file import read_study
+from tests.pace import slowness
 from tests.unit.io.studies import GOOD, write_study
 
 RAMP = 'ramp: "0:0.35:2.5"'
@@ -117,10 +118,10 @@ def test_says_all_that_is_wrong_at_once_each_with_its_line(tmp_path: Path) -> No
 
 def test_a_bomb_of_aliases_is_refused_at_once(tmp_path: Path) -> None:
     levels = "".join(f"{b}: &{b} [{', '.join(['*' + a] * 9)}]\n" for a, b in zip("abcdefgh", "bcdefghi"))
-    started = time.monotonic()
+    started = time.process_time()
     with pytest.raises(InputError, match="line 1: anchors and aliases"):
         read_study(write_study(tmp_path, "a: &a [x]\n" + levels + GOOD))
-    assert time.monotonic() - started < 1
+    assert time.process_time() - started < slowness()
 
 
 @pytest.mark.parametrize("name", RANGES)

@@ -57,7 +57,9 @@ def draft(title: str, file: str, notes: str = "") -> StudyDraft:
     return StudyDraft(title, 0.35, {"ramp": "0:0.35:2.5"}, designs, [StudySet("x y", "X, y", ("a b",))], notes)
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=60)
+@settings(
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow], deadline=None, max_examples=60
+)
 @given(title=TEXT | st.sampled_from(ODD), file=TEXT | st.sampled_from(ODD))
 def test_any_title_and_file_name_reads_back(tmp_path: Path, title: str, file: str) -> None:
     if file == "b.mp4" or Path(file).suffix in (".csv", ".h5"):

@@ -3,8 +3,9 @@
 import math
 import os
 import signal
-import threading
 import time
+from collections.abc import Callable
+from typing import Any
 
 import pytest
 
@@ -12,7 +13,7 @@ from benchlab.bench import Bench
 from benchlab.devices.interface import LostError, Reading, Status
 from benchlab.errors import BenchError
 from benchlab.workflows.bench_hold import ThreadHold, VirtualHold
-from tests.unit.workflows.small_bench import SILENCE_S, SmallBench
+from tests.unit.workflows.small_bench import SILENCE_S, Metronome, SmallBench
 
 FAST = {"period_s": 0.005, "rise_MPa_per_s": 5.0}
 
@@ -21,13 +22,23 @@ def small(**changes) -> SmallBench:
     return SmallBench(Bench("new"), **changes)
 
 
+def until(so: Callable[[], Any]) -> None:
+    """Wait until it is so."""
+    end = time.monotonic() + 60
+    while not so():
+        assert time.monotonic() < end
+        time.sleep(0.005)
+
+
 def test_it_is_never_silent_while_the_caller_waits() -> None:
-    device = small()
-    with ThreadHold(device) as hold:
-        hold.stand(0.02, 0.01)
-        time.sleep(3 * SILENCE_S)  # somebody reads a gauge
-        assert device.armed and device.pressure_MPa > 0
-        hold.check()
+    with Metronome() as metronome:
+        device = small(clock_s=metronome.now_s)
+        with ThreadHold(device) as hold:
+            hold.stand(0.02, 0.01)
+            began_s = metronome.now_s()
+            until(lambda: metronome.now_s() > began_s + 2 * SILENCE_S)  # somebody reads a gauge
+            assert device.armed and device.pressure_MPa > 0
+            hold.check()
     assert device.longest_silence_s < SILENCE_S
     assert not device.armed and device.vents == 1
 
@@ -75,8 +86,9 @@ def test_an_error_of_the_thread_is_seen_at_the_end_too() -> None:
         if n == 20:
             raise LostError("pulled")
 
-    with pytest.raises(LostError), ThreadHold(small(before=before), **FAST):
-        time.sleep(0.3)
+    device = small(before=before)
+    with pytest.raises(LostError), ThreadHold(device, **FAST):
+        until(lambda: device.vents)
 
 
 def test_a_bench_that_vented_itself_ends_the_holding() -> None:
@@ -93,26 +105,37 @@ def test_a_bench_that_vented_itself_ends_the_holding() -> None:
 
 
 def test_more_ctrl_c_wait_for_the_vent() -> None:
-    class Slow(SmallBench):
+    came: list[int] = []
+
+    def interrupt(*_: object) -> None:
+        came.append(1)
+        raise KeyboardInterrupt
+
+    class Interrupted(SmallBench):
         def vent(self) -> None:
-            time.sleep(0.3)
+            for count in (1, 2, 3):
+                os.kill(os.getpid(), signal.SIGINT)
+                until(lambda count=count: len(came) == count)
+            time.sleep(0.05)
             super().vent()
 
-    device = Slow(Bench("new"))
-    with pytest.raises(KeyboardInterrupt), ThreadHold(device, **FAST) as hold:
-        hold.stand(0.05, 0.01)
-        for delay_s in (0.1, 0.15, 0.2):
-            threading.Timer(delay_s, os.kill, (os.getpid(), signal.SIGINT)).start()
-        raise KeyboardInterrupt
-    assert device.vents == 1 and not device.armed
+    device = Interrupted(Bench("new"))
+    before = signal.signal(signal.SIGINT, interrupt)
+    try:
+        with pytest.raises(KeyboardInterrupt), ThreadHold(device, **FAST) as hold:
+            hold.stand(0.05, 0.01)
+            raise KeyboardInterrupt
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert device.vents == 1 and not device.armed and len(came) == 3
 
 
 def test_whoever_has_gone_leaves_a_vented_bench() -> None:
     device = small()
     with pytest.raises(BenchError, match="nobody asked"), ThreadHold(device, **FAST, patience_s=0.3) as hold:
         hold.stand(0.05, 0.05)
-        time.sleep(0.6)
-        assert not device.armed and device.vents == 1
+        until(lambda: not device.armed)
+        assert device.vents == 1
         hold.check()
 
 
