@@ -40,16 +40,16 @@ INTERRUPTED = """
 import contextlib, os, signal, sys
 from benchlab.cli import progress
 
+at = int(sys.argv.pop(1))
+
 @contextlib.contextmanager
 def interrupting(label, quiet=False):
     def report(done, total):
-        if done == int(sys.argv[1]):
+        if done == at:
             os.kill(os.getpid(), signal.SIGINT)
     yield report
 
 progress.progress = interrupting
-words = sys.argv[2:]
-sys.argv[1:] = words
 from benchlab.__main__ import main
 main()
 """
