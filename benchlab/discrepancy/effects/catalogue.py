@@ -16,6 +16,7 @@ from benchlab.discrepancy.effects.effect import Effect
 from benchlab.discrepancy.effects.end_caps import EndCaps
 from benchlab.discrepancy.effects.fabric_compliance import FabricCompliance
 from benchlab.discrepancy.effects.flex_hysteresis import FlexHysteresis
+from benchlab.discrepancy.effects.foreign import Foreign
 from benchlab.discrepancy.effects.frame_compliance import FrameCompliance
 from benchlab.discrepancy.effects.friction import Friction
 from benchlab.discrepancy.effects.gravity import Gravity
@@ -89,6 +90,7 @@ def _loaded(point: EntryPoint) -> Effect:
     try:
         effect = point.load()
         effect = effect() if isinstance(effect, type) else effect
+        problem = faults(effect) if isinstance(effect, Effect) else ""
     except Exception as error:  # whatever a plugin may do
         raise _refused(
             point, f"it cannot be loaded ({type(error).__name__}: {error})", "repair or uninstall it"
@@ -97,14 +99,17 @@ def _loaded(point: EntryPoint) -> Effect:
         raise _refused(
             point, f"{point.value} is no Effect", "derive it from benchlab.discrepancy.effects.effect.Effect"
         )
-    if problem := faults(effect):
+    if problem:
         raise _refused(point, problem, "see docs/effects.md")
-    return effect
+    return Foreign(effect, _package(point))
 
 
 def _refused(point: EntryPoint, what: str, hint: str) -> InputError:
-    distribution = "an unknown package" if point.dist is None else f"{point.dist.name} {point.dist.version}"
-    return InputError(f"effect {point.name!r} of {distribution} is refused: {what}", hint=hint)
+    return InputError(f"effect {point.name!r} of {_package(point)} is refused: {what}", hint=hint)
+
+
+def _package(point: EntryPoint) -> str:
+    return "an unknown package" if point.dist is None else f"{point.dist.name} {point.dist.version}"
 
 
 def faults(effect: Effect) -> str:

@@ -70,7 +70,7 @@ def equation_of(effect: Effect) -> tuple[str, str]:
     >>> equation_of(FrameCompliance())[0]
     'F → F·(1 − s)'
     """
-    module = sys.modules.get(type(effect).__module__)
+    module = sys.modules.get(effect.__module__)
     parts = _BLANK.split(inspect.getdoc(module) or "") if module else []
     at = next((i for i, part in enumerate(parts) if part.startswith("    ") and ">>>" not in part), None)
     if at is None:

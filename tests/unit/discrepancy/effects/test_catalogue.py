@@ -94,6 +94,57 @@ def test_a_broken_package_is_refused_by_its_name(install: Install, code: str, po
     assert "\n" not in str(refused.value)
 
 
+ANGLE = 'return angle_deg * (1 - at.values["share"] * (angle_deg / 100) ** 2)'
+"""What the example does to the angle."""
+
+
+@pytest.mark.parametrize(
+    ("does", "message"),
+    [
+        ("return angle_deg * at.values['part']", "angle, line 23: effect 'locking' of our_lab_effects 1.0: it fails with KeyError: 'part'"),
+        ("import math; return math.sqrt(angle_deg)", "it fails with TypeError: only"),
+        ("return None", "angle: effect 'locking' of our_lab_effects 1.0: it gives NoneType; give numbers"),
+        ("return 'much'", "it gives str"),
+        ("return angle_deg / 0", "it gives values that are not finite"),
+        ("return angle_deg[0]", r"it gives values of shape \(\d+,\) where \(\d+, \d+\) are asked for"),
+        ("raise RuntimeError", r"it fails with RuntimeError; repair it there, or uninstall the package to go on without it"),
+    ],
+)  # fmt: skip
+def test_what_the_code_of_a_package_does_wrong_is_told_as_its_own(install: Install, does: str, message: str) -> None:
+    install(EXAMPLE.replace(ANGLE, does), "locking = our_lab_effects:Locking")
+    with pytest.raises(InputError, match=message) as refused:
+        predict(scene(("slow",), 2), [Active(effects()["locking"], {"share": 0.05})])
+    assert str(refused.value).startswith("our_lab_effects.py, angle") and "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("method", "message"),
+    [
+        ("def knobs(self, at): return {'film': 1.1}", "knobs: effect 'locking' of .* 1.0: no structural knob is called 'film'"),
+        ("def knobs(self, at): return 1.1", "it gives float; give a dict of settings by knob"),
+        ("def knobs(self, at): return {'film_modulus': [1, 2]}", r"it gives values of shape \(2,\)"),
+        ("def cannot_show(self, scene): return 1 / 0", "cannot_show, line 25: .* it fails with ZeroDivisionError: division by zero"),
+    ],
+)  # fmt: skip
+def test_so_are_knobs_and_what_cannot_be_shown(install: Install, method: str, message: str) -> None:
+    install(f"{EXAMPLE}\n    {method}\n", "locking = our_lab_effects:Locking")
+    on, effect = scene(("slow",), 2), effects()["locking"]
+    with pytest.raises(InputError, match=message):
+        predict(on, [Active(effect, {"share": 0.05})])
+        effect.cannot_show(on)
+
+
+def test_a_package_that_changes_what_it_is_given_changes_a_copy(install: Install) -> None:
+    install(
+        f"{EXAMPLE}\n    def gauge(self, pressure_MPa, at):\n        pressure_MPa *= 0.5\n        return pressure_MPa\n",
+        "locking = our_lab_effects:Locking",
+    )
+    on = scene(("slow",), 2)
+    before = on.pressure_MPa.copy()
+    predict(on, [Active(effects()["locking"], {"share": 0.05})])
+    assert np.array_equal(on.pressure_MPa, before)
+
+
 def changed(**parts: object) -> Effect:
     friction = type(built_in()["friction"])
     return type("Changed", (friction,), parts)()  # type: ignore[no-any-return]
