@@ -15,8 +15,8 @@ import pytest
 LONG_S = 120.0
 """Until something that does not come is given up: a test that passes never waits so long."""
 
-LATE = ("--guard", "late_s=10", "--guard", "fault_share=off")
-"""A run whose ticks may come late, and so may the answers to them."""
+LATE = ("--guard", "late_s=10")
+"""A run whose ticks may come late."""
 
 PATIENCE: dict[str, dict[str, float]] = {
     "benchlab.devices.serial_bench": {"PATIENCE": 200.0, "LOST_S": 20.0},
