@@ -33,7 +33,7 @@ def pulled_MPa(law: Law, stretch: float, folder: Path) -> float:
     """Nominal stress that CalculiX finds at a stretch."""
     deck = folder / "one.inp"
     deck.write_text(ELEMENT.format(card="\n".join(material_card(law, 5000.0)), pull=stretch - 1))
-    words = run_calculix(deck, timeout_s=20).read_text().split("total force")[-1].split()
+    words = run_calculix(deck, timeout_s=600).read_text().split("total force")[-1].split()
     return float(words[words.index("time") + 2]) / 0.3
 
 

@@ -119,7 +119,7 @@ def unknown_there(item):
 
 def test_a_cluster_that_does_not_know_the_work_is_told_to_be_made_alike(scheduler, workers):
     with pytest.raises(UsageError, match=r"cannot import what it needs"):
-        list(run_on_cluster([1], unknown_there, scheduler))
+        list(run_on_cluster([1], unknown_there, scheduler, timeout_s=LONG_S))
 
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense://x", "127.0.0.1:99999"])
