@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from functools import cache, lru_cache
 
 import numpy as np
 
@@ -17,9 +18,7 @@ def drawable(text: str, length: int) -> str:
     >>> drawable("a" * 20 + ".mp4", 11)
     'aaaaaa….mp4'
     """
-    from matplotlib.font_manager import FontProperties, findfont, get_font
-
-    known = get_font(findfont(FontProperties())).get_charmap()
+    known = _signs()
     text = "".join(c if ord(c) in known else "□" for c in printable(text))
     if len(text) <= length:
         return text
@@ -27,6 +26,15 @@ def drawable(text: str, length: int) -> str:
     return text[: length - tail - 1] + "…" + text[-tail:]
 
 
+@cache
+def _signs() -> frozenset[int]:
+    """Code points that the font of figures has. Making the list takes as long as drawing a line of text."""
+    from matplotlib.font_manager import FontProperties, findfont, get_font
+
+    return frozenset(get_font(findfont(FontProperties())).get_charmap())
+
+
+@lru_cache(maxsize=4096)
 def width_in(text: str, fontsize: float) -> float:
     """Width of a text as a figure draws it, in inches."""
     from matplotlib.font_manager import FontProperties

@@ -36,9 +36,8 @@ NAMES = {
 
 def faults(figure: Any) -> list[str]:
     """Texts that overlap each other, that leave the figure, or that are too small to read."""
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    renderer = canvas.get_renderer()
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    figure.draw_without_rendering()  # puts all in place, and paints nothing
     kept = {
         label
         for ax in figure.axes
