@@ -16,7 +16,9 @@ FLAGS = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-
          "--disable-component-update", "--disable-sync", "--hide-scrollbars", "--virtual-time-budget=8000")  # fmt: skip
 
 MEASURE = """
-const page = document.querySelector("iframe").contentDocument, view = page.defaultView;
+const frames = [...document.querySelectorAll("iframe")];
+const measured = frame => {
+const page = frame.contentDocument, view = page.defaultView;
 const boxes = [], small = [], walker = page.createTreeWalker(page.body, NodeFilter.SHOW_TEXT);
 while (walker.nextNode()) {
   const node = walker.currentNode, style = view.getComputedStyle(node.parentElement);
@@ -40,8 +42,16 @@ for (let i = 0; i < boxes.length; i++)
 const width = view.innerWidth;
 const outside = boxes.filter(b => !b[5] && (b[0] < -1 || b[2] > width + 1)).map(b => b[4]);
 const wide = page.documentElement.scrollWidth, height = page.documentElement.scrollHeight;
-document.body.innerHTML = "";
-document.body.append(JSON.stringify({width, wide, height, texts: boxes.length, small, overlaps, outside}));
+return {width, wide, height, texts: boxes.length, small, overlaps, outside};
+};
+let waited = frames.length;
+for (const frame of frames)
+  frame.onload = () => {
+    if (--waited) return;
+    const found = JSON.stringify(frames.map(measured));
+    document.body.innerHTML = "";
+    document.body.append(found);
+  };
 """
 
 
@@ -72,24 +82,23 @@ def chromium() -> str:
     return found
 
 
-def layout(page: str, width: int) -> Layout:
-    """The faults of a page in a window of a width in px. Measured in a frame, on a copy that lets a script look."""
+def layouts(page: str, *widths: int) -> list[Layout]:
+    """The faults of a page in windows of these widths in px. Measured in frames, on a copy that lets a script look."""
     assert "Content-Security-Policy" in page
     free = page.replace("Content-Security-Policy", "X-Not-A-Policy")
-    frame = (
-        f'<!doctype html><iframe style="border:0;width:{width}px;height:900px" srcdoc="{html.escape(free)}"></iframe>'
-    )
-    outer = f'{frame}<script>document.querySelector("iframe").onload = () => {{ {MEASURE} }};</script>'
+    escaped = html.escape(free)
+    frames = [f'<iframe style="border:0;width:{w}px;height:900px" srcdoc="{escaped}"></iframe>' for w in widths]
+    outer = f"<!doctype html>{''.join(frames)}<script>{MEASURE}</script>"
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "frame.html"
         path.write_text(outer, encoding="utf-8")
         dom = run(path, "--dump-dom", "--window-size=1400,1000").stdout.decode()
     told = dom[dom.index("<body>") + 6 : dom.index("</body>")]
-    return Layout(**json.loads(html.unescape(told)))
+    return [Layout(**one) for one in json.loads(html.unescape(told))]
 
 
 def run(page: Path, *options: str) -> subprocess.CompletedProcess[bytes]:
     """Chromium on a local file, with a profile of its own."""
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         command = [chromium(), *FLAGS, f"--user-data-dir={profile}", *options, page.resolve().as_uri()]
-        return subprocess.run(command, capture_output=True, timeout=120, check=True)
+        return subprocess.run(command, capture_output=True, timeout=600, check=True)

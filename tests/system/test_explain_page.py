@@ -7,7 +7,7 @@ from functools import cache
 import pytest
 
 from benchlab.report.page import render_page
-from tests.system.chromium import chromium, layout
+from tests.system.chromium import chromium, layouts
 from tests.unit.report import explanations
 
 
@@ -19,6 +19,5 @@ def page_of(kind: str) -> str:
 @pytest.mark.parametrize("kind", ["ambiguous", "the published table", "fourteen designs", "one sample"])
 def test_layout(kind: str) -> None:
     chromium()
-    for width in (1200, 400):
-        seen = layout(page_of(kind), width)
-        assert seen.texts > 40 and not seen.faults, width
+    for seen in layouts(page_of(kind), 1200, 400):
+        assert seen.texts > 40 and not seen.faults, seen.width

@@ -13,7 +13,7 @@ import pytest
 from benchlab.io.study_values import StudyValues
 from benchlab.report.page import render_page
 from benchlab.report.study.document import study_document
-from tests.system.chromium import chromium, layout, run
+from tests.system.chromium import chromium, layouts, run
 from tests.unit.report import studies
 
 HOSTILE = ("<script>alert(1)</script>", "$x_{$", "bell\x07\x1b[31m", "=cmd|calc", "n" * 5000, "W" * 80)
@@ -40,16 +40,14 @@ def page_of(values: StudyValues) -> str:
 @pytest.mark.parametrize("kind", STUDIES)
 def test_layout(kind: str) -> None:
     chromium()
-    page = page_of(STUDIES[kind]())
-    for width in (1200, 400):
-        seen = layout(page, width)
-        assert seen.texts > 60 and not seen.faults, f"{width} px"
+    for seen in layouts(page_of(STUDIES[kind]()), 1200, 400):
+        assert seen.texts > 60 and not seen.faults, f"{seen.width} px"
 
 
 def test_the_check_sees_faults() -> None:
     chromium()
     faulty = page_of(STUDIES["one sample"]()).replace("<main>", '<main><p style="position:absolute;top:3rem">On top of something</p><p style="width:2000px;max-width:none;white-space:nowrap;font-size:8px">' + "wide " * 400 + "</p>")  # fmt: skip
-    seen = layout(faulty, 800)
+    (seen,) = layouts(faulty, 800)
     assert seen.overlaps and seen.outside and seen.small and seen.wide > seen.width
 
 
