@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from benchlab.errors import InputError
+from benchlab.errors import InputError, printable
 from benchlab.io.delimited import Table, open_table
 from benchlab.io.measured_columns import Column, Columns
 from benchlab.io.numbers import NumberReader
@@ -74,20 +74,23 @@ def _read_strictly(table: Table, columns: Columns, rows: Iterable[Row]) -> Cells
     lines = array("q")
     texts: dict[str, list[str]] = {key: [] for key, column in columns.read.items() if is_text(column)}
     numbers = {key: array("d") for key in columns.read if key not in texts}
+    first_of = ""
     for line, cells in rows:
         lines.append(line)
         for key, found in texts.items():
             found.append(unguarded(cells[columns.read[key].index].strip()))
         for key, values in numbers.items():
             values.append(reader.read(cells[columns.read[key].index], line))
+            if reader.unreadable and not first_of:
+                first_of = columns.read[key].label
     data: dict[str, Any] = {key: np.asarray(values) for key, values in numbers.items()}
     data |= {key: pandas.Categorical(found) for key, found in texts.items()}
-    notes = [*table.warnings, *_notes(table, reader, len(lines) * len(numbers))]
+    notes = [*table.warnings, *_notes(table, reader, len(lines) * len(numbers), first_of)]
     return Cells(pandas.DataFrame(data, index=np.asarray(lines)), columns, tuple(notes))
 
 
-def _notes(table: Table, reader: NumberReader, cells: int) -> list[str]:
-    """What is to be said of cells without a number. Raises InputError where they are many."""
+def _notes(table: Table, reader: NumberReader, cells: int, first_of: str) -> list[str]:
+    """What is to be said of cells without a number, the first of them in column `first_of`. Raises InputError where they are many."""
     notes = ["not UTF-8: read as Latin-1"] if table.encoding == "latin-1" else []
     if reader.commas_may_be_thousands:
         notes.append("every comma has three digits behind it: read as decimal commas")
@@ -96,8 +99,8 @@ def _notes(table: Table, reader: NumberReader, cells: int) -> list[str]:
         what = f"{len(reader.unreadable)} of {cells} cells hold no number, the first {cell!r}"
         if len(reader.unreadable) > MAX_UNREADABLE * cells:
             hint = f"at most {100 * MAX_UNREADABLE:g} % are passed over; a row of units belongs into the names"
-            raise InputError(what, file=table.path, where=f"line {line}", hint=hint)
-        notes.append(f"{what} in line {line}: no value there")
+            raise InputError(what, file=table.path, where=f"line {line}, column {first_of}", hint=hint)
+        notes.append(f"{what} in line {line}, column {printable(first_of)}: no value there")
     return notes
 
 

@@ -41,7 +41,8 @@ class RunName:
 @dataclass(frozen=True)
 class Rows:
     """Rows of one source. frame: design, sample, run (categories), numbers by the names of benchlab (`angle_deg`, `angle_deg sd`), columns
-    of `against`; its index is the line. word: what a line is called. x: the column of the pressure, or of what takes its place."""
+    of `against`; its index is the line. word: what a line is called. x: the column of the pressure, or of what takes its place. unsaid: of
+    design, sample and run those that neither a column nor the file's name says."""
 
     frame: pandas.DataFrame
     source: str
@@ -50,6 +51,7 @@ class Rows:
     against: tuple[str, ...] = ()
     simulated: bool = False
     warnings: list[str] = field(default_factory=list)
+    unsaid: tuple[str, ...] = ()
 
     def refused(self, what: str, at: int, hint: str) -> InputError:
         return InputError(what, file=self.source, where=f"{self.word} {self.frame.index[at]}", hint=hint)
@@ -61,9 +63,10 @@ def rows_of(cells: Cells, source: str, word: str, against: Sequence[str], name: 
     frame = _converted(cells)
     _settle_against(frame, against)
     x = _x_of(cells.columns, frame, source, against, warnings)
+    unsaid = _unsaid(frame, name)
     warnings += _settle_names(frame, source, word, name, samples)
     simulated = "origin" in frame and any("simulated" in str(text) for text in frame["origin"].unique())
-    rows = Rows(frame, source, word, x, tuple(against), simulated, warnings)
+    rows = Rows(frame, source, word, x, tuple(against), simulated, warnings, unsaid)
     _check_names(rows)
     _check_numbers(rows)
     if x == "pressure_MPa":
@@ -77,6 +80,26 @@ def _converted(cells: Cells) -> pandas.DataFrame:
         if column.meaning is not None and column.meaning.kind:
             frame[key] = converted(frame[key].to_numpy(dtype=float), column.meaning)
     return frame
+
+
+def empty_words(columns: Columns, rows: Rows) -> list[str]:
+    """Columns without a number, told; refused where the pressure, the time or all that was measured is among them."""
+    frame = rows.frame
+    numbers = [key for key in columns.read if key in frame and frame[key].dtype == float]
+    labels = {
+        key: printable(columns.read[key].label) for key in numbers if not np.isfinite(frame[key].to_numpy()).any()
+    }
+    values = values_in(frame)
+    lacking = [key for key in (rows.x, "time_s") if key in labels] or (values if labels.keys() >= set(values) else [])
+    if lacking:
+        what = f"no number in column {', '.join(labels[key] for key in lacking)}"
+        hint = (
+            "fill it; a column of time may be left out"
+            if lacking == ["time_s"]
+            else "is it the right one? --columns names another"
+        )
+        raise InputError(what, file=rows.source, hint=hint)
+    return [f"no number in column {label}: not used" for label in labels.values()]
 
 
 def _settle_against(frame: pandas.DataFrame, against: Sequence[str]) -> None:
@@ -121,6 +144,16 @@ def _x_of(columns: Columns, frame: pandas.DataFrame, source: str, against: Seque
         "call it pressure_MPa (or kPa, bar, psi ...), or say --columns pressure_kPa=NAME; another variable: --against"
     )
     raise InputError(what, file=source, hint=hint)
+
+
+def _unsaid(frame: pandas.DataFrame, name: RunName) -> tuple[str, ...]:
+    """A file whose name says the sample is one run of it, unless its rows say samples themselves."""
+    said = {
+        "design": name.design or {"tw_mm", "slw_mm"} <= set(frame),
+        "sample": name.sample,
+        "run": name.sample and "sample" not in frame,
+    }
+    return tuple(each for each in NAMES if each not in frame and not said[each])
 
 
 def _settle_names(frame: pandas.DataFrame, source: str, word: str, name: RunName, samples: bool) -> list[str]:

@@ -16,6 +16,7 @@ from benchlab.discrepancy.measured import Measured, Run
 from benchlab.errors import InputError, counted, printable
 from benchlab.io.measured_doubts import copies, unit_jumps
 from benchlab.io.measured_frame import NAMES, Rows, values_in, without_gaps
+from benchlab.io.measured_order import check_one_run, remedy
 from benchlab.units import FloatArray
 
 if TYPE_CHECKING:
@@ -131,6 +132,7 @@ def _key(frame: pandas.DataFrame) -> NDArray[np.int64]:
 
 def _run(rows: Rows, name: tuple[str, str, str], repeats: _Repeats) -> Run:
     rows = _each_time_once(rows, name, repeats)
+    check_one_run(rows, name)
     frame = rows.frame
     told = {key: frame[key].to_numpy(dtype=float) for key in frame if frame[key].dtype == float}
     values = {key: told[key] for key in values_in(told) if np.isfinite(told[key]).any()}
@@ -233,13 +235,14 @@ def _check_clock(rows: Rows, frame: pandas.DataFrame, again: np.ndarray, of: str
         lines = sorted(frame.index[[place, place + 1]].tolist())
         what = f"{of} has two rows with other values at {frame['time_s'].iloc[place]:g} s, {rows.word}s {lines[0]} and {lines[1]}"
         hint = "are two runs called alike, or does time begin again in each cycle? name each run, and let time go on"
-        raise InputError(what, file=rows.source, where=f"{rows.word} {lines[1]}", hint=hint)
+        raise InputError(what, file=rows.source, where=f"{rows.word} {lines[1]}", hint=remedy(rows, hint))
 
 
 def _averaged(frame: pandas.DataFrame) -> pandas.DataFrame:
-    """One row a time: the mean of numbers, the first of words."""
+    """One row a time, at the first line of it: the mean of numbers, the first of words."""
     numeric = {key: "mean" if frame[key].dtype == float else "first" for key in frame if key != "time_s"}
-    return frame.groupby("time_s", sort=True, as_index=False).agg(numeric)
+    first = frame.index[~frame["time_s"].duplicated().to_numpy()]
+    return frame.groupby("time_s", sort=True, as_index=False).agg(numeric).set_index(first)
 
 
 def _back_in_time(rows: Rows) -> list[str]:

@@ -22,7 +22,7 @@ from benchlab.discrepancy.measured import QUANTITIES, Measured, Summary
 from benchlab.errors import InputError, UsageError, printable
 from benchlab.io.measured_cells import Cells, is_text, read_cells
 from benchlab.io.measured_columns import find_columns
-from benchlab.io.measured_frame import Rows, RunName, left_words, rows_of, values_in
+from benchlab.io.measured_frame import Rows, RunName, empty_words, left_words, rows_of, values_in
 from benchlab.io.measured_runs import measured_of_runs, runs_of
 from benchlab.io.measured_summary import summary_of
 
@@ -81,7 +81,7 @@ def _rows(cells: Cells, source: str, word: str, against: Sequence[str], name: Ru
     if cells.frame.empty:
         raise InputError("no data rows", file=source, hint="the table holds only a header")
     rows = rows_of(cells, source, word, against, name, samples=not cells.columns.of_means)
-    rows.warnings.extend(left_words(cells.columns))
+    rows.warnings.extend([*empty_words(cells.columns, rows), *left_words(cells.columns)])
     return rows
 
 

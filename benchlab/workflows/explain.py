@@ -20,6 +20,7 @@ from benchlab.discrepancy.measured import Measured, Summary
 from benchlab.errors import UsageError
 from benchlab.io.designs_table import designs_of_frame
 from benchlab.io.experiment_protocol import protocol_of
+from benchlab.io.hdf5 import is_hdf5
 from benchlab.io.layup_file import read_layup
 from benchlab.io.measured_table import measured_of_frame
 from benchlab.io.simulated_table import read_simulated
@@ -32,6 +33,7 @@ from benchlab.workflows.explain_next import LIMIT_MPa
 from benchlab.workflows.explain_outputs import ExplainOutputs, written
 from benchlab.workflows.explain_read import read_explained
 from benchlab.workflows.explain_surrogate import surrogate_error
+from benchlab.workflows.explain_units import check_units
 
 if TYPE_CHECKING:
     import pandas
@@ -105,8 +107,10 @@ def _explained(
         choice.jobs,
         lambda done, total: tell("analysing recordings", done, total),
     )
-    wanted = Wanted(designs_in(measured), largest_MPa(measured), "force_N" in quantities_in(measured))
+    tables = [path for path in paths if path.is_file() and not is_hdf5(path)]
+    wanted = Wanted(designs_in(measured), largest_MPa(measured), "force_N" in quantities_in(measured), tables)
     chosen = choose_base(wanted, choice, paths, lambda done, total: tell("simulating designs", done, total))
+    check_units(measured, chosen.base, wanted.largest_MPa)
     found = explain_measured(measured, chosen.base, seed=settings.seed, progress=lambda words: tell(words, 0, None))
     return finished(found, chosen, (*paths, *choice.reads), outputs, tell)
 

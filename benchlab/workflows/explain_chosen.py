@@ -9,8 +9,10 @@ from pathlib import Path
 from benchlab.actuator import ShellDesign
 from benchlab.discrepancy.base import Base, DesignBase
 from benchlab.errors import InputError, UsageError, printable
+from benchlab.io.delimited import open_table
 from benchlab.io.designs_table import designs_beside, designs_of_names, read_designs
 from benchlab.io.layup_file import read_layup
+from benchlab.io.measured_frame import UNNAMED
 from benchlab.io.model_file import ModelEffect, check_source
 from benchlab.io.simulated_table import read_simulated
 from benchlab.simulation.layup import Layup
@@ -28,11 +30,12 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True)
 class Wanted:
-    """What is to be simulated: designs by name, up to the largest pressure, also their blocked force?"""
+    """What is to be simulated: designs by name, up to the largest pressure, also their blocked force? tables: that name the designs."""
 
     names: Sequence[str]
     largest_MPa: float
     forces: bool = False
+    tables: Sequence[Path] = ()
 
 
 @dataclass(frozen=True)
@@ -148,7 +151,8 @@ def _simulated(
     progress: Progress | None,
 ) -> Base:
     if not shapes:
-        listed = ", ".join(map(printable, wanted.names[:5])) + " …" * (len(wanted.names) > 5)
+        _check_designed(wanted, "that --designs has, or columns tw_mm and slw_mm")
+        listed = _some(wanted.names)
         what = f"no dimensions are known of {listed}" if listed else "no design is given"
         hint = "give --designs with columns design, tw_mm, slw_mm, or simulated curves with --simulation"
         raise UsageError(what, hint=hint)
@@ -166,6 +170,21 @@ def _simulated(
     return replace(base, missing={**base.missing, **unknown})
 
 
+def _check_designed(wanted: Wanted, which: str) -> None:
+    """Raises InputError where a table does not say of which design its rows are. which: designs may be named."""
+    if list(wanted.names) != [UNNAMED["design"]] or not wanted.tables:
+        return
+    with open_table(wanted.tables[0]) as table:
+        there = ", ".join(map(printable, table.header))
+    what = f"no column design: its rows are taken as of one that is called {UNNAMED['design']!r}, and none is simulated as that"
+    hint = f"add a column design, with names {which}; the columns are {there}"
+    raise InputError(what, file=table.path, hint=hint)
+
+
+def _some(names: Sequence[str]) -> str:
+    return ", ".join(map(printable, names[:5])) + " …" * (len(names) > 5)
+
+
 def _foreign(
     path: Path,
     shapes: Mapping[str, ShellDesign],
@@ -178,6 +197,8 @@ def _foreign(
     """Curves of another engine, with the sensitivities of the cell for designs whose dimensions are known."""
     every = read_simulated(path, choice.simulation_columns, told)
     curves = {name: every[name] for name in wanted.names if name in every} if wanted.names else dict(every)
+    if not curves:
+        _check_designed(wanted, f"of those that are simulated: {_some(tuple(every))}")
     shapes = {**_own_shapes(curves), **{name: shape for name, shape in shapes.items() if name in curves}}
     cell = None
     if shapes:

@@ -113,7 +113,9 @@ def test_a_long_table_reads_as_its_short_parts(tmp_path: Path, how: dict) -> Non
         {"design": rng.choice(["α", "b"], n), "sample": rng.choice([" s1", "s2"], n), "time_s": np.arange(n) / 100}
     )
     table = table.assign(
-        pressure_MPa=rng.uniform(0, 0.4, n).round(5), angle_deg=rng.normal(60, 20, n), command_MPa=0.125
+        pressure_MPa=np.sort(rng.uniform(0, 0.4, n)).round(5),
+        angle_deg=np.sort(rng.normal(60, 20, n)),
+        command_MPa=0.125,
     )
     table.loc[rng.integers(n, size=50), "angle_deg"] = np.nan
     path = write(tmp_path, table, **how)

@@ -114,7 +114,7 @@ def test_every_fit_for_rules_of_others(frame: pd.DataFrame) -> None:
             lambda f: f.assign(pressure_MPa=f["pressure_MPa"] + 0.5),
             "no measured value lies where there is a simulated curve",
         ),
-        (lambda f: f.assign(angle_deg=np.nan), "no value in any run"),
+        (lambda f: f.assign(angle_deg=np.nan), "no number in column angle_deg"),
         (lambda f: f.head(3), "cannot carry a verdict"),
         (lambda f: f.assign(angle_rad=np.radians(f["angle_deg"])), "two columns|angle"),
     ],
