@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Literal
@@ -30,6 +30,7 @@ ALPHA = 0.05
 Model = Literal["simulated", "explained"]
 
 _LEVELS = (("direction", "rate", "cycle"), ("direction", "rate"), ("direction",))
+RAMPS = ("loading", "unloading")
 _ORDER = {"loading": 0, "hold": 1, "unloading": 2, "rest": 3}
 _ROW_IN, _FOOT_IN, _BAR_IN = 0.2, 0.52, 0.62
 
@@ -73,10 +74,11 @@ def gap_map(curves: Curves, quantity: str, model: Model = "simulated", most: int
     details = [
         ", ".join(filter(None, (_told(part) for part, several in zip(key[1:], varied) if several))) for key in order
     ]
+    ends = _ends([part.middle_MPa for part in parts], [key[1] in RAMPS for key in order])
     return GapMap(
         tuple(key[0] for key in order),
         tuple(details),
-        tuple(replace(part, edges_MPa=_edges(part.middle_MPa, width)) for part in parts),
+        tuple(replace(part, edges_MPa=_edges(part.middle_MPa, width).clip(*ends)) for part in parts),
         len(dict.fromkeys(curves.design[kept].tolist())) - len(designs),
     )
 
@@ -137,6 +139,18 @@ def _runs_alike(curves: Curves, index: NDArray[np.int64]) -> Iterator[NDArray[np
     names = list(zip(curves.kind[index].tolist(), curves.direction[index].tolist(), curves.cycle[index].tolist()))
     for one in dict.fromkeys(names):
         yield np.array([name == one for name in names])
+
+
+def _ends(middles_MPa: Sequence[FloatArray], ramps: Sequence[bool]) -> tuple[float, float]:
+    """Where the data begin and end: half an interval beyond the outermost of a ramp, and where a hold is held. One pressure has room.
+
+    >>> _ends([np.array([0.25, 0.75]), np.array([0.5, 0.75])], [True, False])
+    (0.0, 1.0)
+    """
+    half = [float(np.diff(row).min()) / 2 if ramp and len(row) > 1 else 0.0 for row, ramp in zip(middles_MPa, ramps)]
+    spans = [(row[0] - more, row[-1] + more) for row, more in zip(middles_MPa, half) if len(row)]
+    low, high = min((low for low, _ in spans), default=0.0), max((high for _, high in spans), default=0.0)
+    return (float(low), float(high)) if high > low else (-np.inf, np.inf)
 
 
 def _edges(middle_MPa: FloatArray, width_MPa: float) -> FloatArray:

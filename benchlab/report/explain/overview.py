@@ -26,7 +26,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _WIDTH, _LEFT, _MAP, _RIGHT, _GAP = 13.4, 2.9, 3.6, 5.3, 0.75
-_HEAD, _FOOT, _TALL_CURVES, _MOST_ROWS = 1.45, 0.55, 4.6, 30
+_HEAD, _FOOT, _TALL_CURVES, _MOST_ROWS = 1.6, 0.55, 4.6, 30
+_KEY = 1.0
+"""Of the legend's upper end from the top: under the words, over the titles of the panels."""
 _BOLD: dict[str, Any] = {**TEXT, "fontweight": "bold"}
 
 
@@ -51,12 +53,12 @@ def draw_overview(explanation: Explanation) -> Figure:
         each = (_RIGHT - _GAP * (len(heads) - 1)) / len(heads)
         for place, one in enumerate(heads):
             _plot_one(page, explanation, one, _WIDTH - 0.2 - _RIGHT + place * (each + _GAP), each)
-        _legend(page.figure.axes[-1])
+        _legend(page, page.figure.axes[-1])
     else:
         ax = page.axes(_WIDTH - 0.2 - _RIGHT + 1.2, _FOOT + tall - map_tall, _RIGHT - 1.2, map_tall)
         plot_changes(ax, rows, names_of(explanation)[1], 1.7)
         ax.set_xlabel(f"gap ({quantity.unit})" if quantity.unit else "gap", fontsize=10, parse_math=False)
-        _legend(ax)
+        _legend(page, ax)
     return page.figure
 
 
@@ -97,8 +99,13 @@ def _plot_one(page: _Page, explanation: Explanation, one: Kind, left: float, wid
     upper.set_title("\n".join(filter(None, lines)), loc="left", **_BOLD)
 
 
-def _legend(ax: Axes) -> None:
-    for text in ax.legend(loc="best", fontsize=8, frameon=False).get_texts():
+def _legend(page: _Page, ax: Axes) -> None:
+    """Above the panels on the right, where there is nothing else."""
+    lines, names = ax.get_legend_handles_labels()
+    place = (1 - 0.2 / _WIDTH, 1 - _KEY / page.figure.get_size_inches()[1])
+    key = page.figure.legend(lines, names, loc="upper right", bbox_to_anchor=place, ncols=3, fontsize=8, frameon=False,
+                             borderaxespad=0, borderpad=0)  # fmt: skip
+    for text in key.get_texts():
         text.set_parse_math(False)
 
 

@@ -80,6 +80,17 @@ def test_each_kind_of_run_has_its_own_cells_without_holes() -> None:
     assert sum(inside) == 1
 
 
+def test_the_cells_of_holds_end_where_the_data_do() -> None:
+    at = np.array([0.1, 0.2, 0.35])
+    held = explanations.of_rows([
+        ("a", "angle_deg", "held", "hold", cycle, np.nan, pressure, 5.0, 30.0, 1.0, 5.0, 29.0, 29.5, 0.5)
+        for cycle in (1, 2) for pressure in (at if cycle == 1 else at[-1:])
+    ])  # fmt: skip
+    first, last = gap_map(held, "angle_deg").rows
+    np.testing.assert_allclose(first.edges_MPa, [0.1, 0.15, 0.275, 0.35])
+    assert last.edges_MPa[-1] == 0.35
+
+
 def test_where_rates_share_a_row_bins_of_the_same_place_are_one() -> None:
     found = gap_map(shifted(0.011), "angle_deg", most=6)
     assert [len(row.gap) for row in found.rows] == [8, 1, 8] * 2
