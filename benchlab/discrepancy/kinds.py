@@ -88,7 +88,7 @@ def _kind(run: Run, cut: Sequence[Segment]) -> Kind:
     cycles = max((segment.cycle for segment in kept), default=1)
     words = f"to {float(np.max(run.pressure_MPa)):.2g} MPa"
     words += f" at {np.median(loadings):.2g} MPa/s" if loadings else ""
-    words += f", {cycles} cycles" if cycles > 1 else ""
+    words += f", loaded {cycles} times" if cycles > 1 else ""
     words += f", held {hold:.2g} s" if hold else ""
     words += f", mounted at {run.orientation_deg:g}°" if run.orientation_deg is not None else ""
     return Kind(words, _apart(_rates(run, kept, ("loading", "unloading"))))

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from benchlab.discrepancy.identify import Identified
+from benchlab.discrepancy.measured import QUANTITIES
 from benchlab.discrepancy.problem import Problem
 from benchlab.units import FloatArray
 
@@ -31,24 +32,32 @@ def remainder_words(problem: Problem, found: Identified, left: FloatArray) -> tu
     rms = float(np.sqrt(np.mean(left**2)))
     shares = {name: _between(left, values) for name, values in labels.items()}
     words = [
-        f"{share:.0%} of it goes with {name}: {_extremes(problem, name, labels[name], left)}"
+        f"{100 * share:.0f} % of it goes with {name}: {_extremes(problem, name, labels[name], left)}"
         for name, share in sorted(shares.items(), key=lambda item: -item[1])
         if share > STANDS_OUT
     ]
-    everywhere = _everywhere(left) if len(problem.features.quantities) == 1 else []
+    everywhere = _everywhere(left, _unit(problem)) if len(problem.features.quantities) == 1 else []
     known = np.isfinite(found.p_left)
-    more = f"{rms:.2g} RMS is left, more than scatter (p = {found.p_left:.2g})"
+    size = f"{rms:.2g}{_unit(problem)} RMS"
+    more = f"{size} is left, more than scatter (p = {found.p_left:.2g})"
     return (
-        more if known else f"{rms:.2g} RMS is the gap; how much of it is scatter is not known",
+        more if known else f"{size} is the gap; how much of it is scatter is not known",
         *(everywhere + words or ["it depends on nothing simple"]),
     )
 
 
-def _everywhere(left: FloatArray) -> list[str]:
+def _unit(problem: Problem) -> str:
+    """Of a number of the remainder; none where several quantities are in it."""
+    quantities = problem.features.quantities
+    unit = QUANTITIES.get(quantities[0], "") if len(quantities) == 1 else ""
+    return unit if unit in ("", "°") else f" {unit}"
+
+
+def _everywhere(left: FloatArray, unit: str) -> list[str]:
     """What all features have in common."""
     mean = float(np.mean(left))
     share = mean**2 / max(float(np.mean(left**2)), 1e-300)
-    return [f"{share:.0%} of it is the same everywhere: {mean:+.2g}"] if share > STANDS_OUT else []
+    return [f"{100 * share:.0f} % of it is the same everywhere: {mean:+.2g}{unit}"] if share > STANDS_OUT else []
 
 
 def _labels(problem: Problem) -> dict[str, np.ndarray]:
@@ -95,7 +104,8 @@ def _between(values: FloatArray, labels: np.ndarray) -> float:
 def _extremes(problem: Problem, name: str, labels: np.ndarray, left: FloatArray) -> str:
     means = {value: float(np.mean(left[labels == value])) for value in np.unique(labels)}
     low, high = min(means, key=lambda v: means[v]), max(means, key=lambda v: means[v])
-    return f"{means[low]:+.2g} on average for {_word(problem, name, low)}, {means[high]:+.2g} for {_word(problem, name, high)}"
+    first, last = (f"{means[value]:+.2g}{_unit(problem)}" for value in (low, high))
+    return f"{first} on average for {_word(problem, name, low)}, {last} for {_word(problem, name, high)}"
 
 
 def _word(problem: Problem, name: str, value: Any) -> str:

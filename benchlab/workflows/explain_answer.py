@@ -16,7 +16,7 @@ def answer_of(explanation: Explanation, model: str | None = None) -> dict[str, A
         "where": [_region(region) for region in explanation.where],
         "effects": [_effect(effect) for effect in explanation.effects],
         "rivals": [list(names) for names in explanation.rivals],
-        "gap": asdict(explanation.gap),
+        "gap": {**asdict(explanation.gap), "quantity": _only(explanation)},
         "next_experiment": _next(explanation.next_experiment),
         "model": model,
         "warnings": list(explanation.warnings),
@@ -32,6 +32,12 @@ def answer_of(explanation: Explanation, model: str | None = None) -> dict[str, A
         "samples": explanation.samples,
     }
     return {name: _finite(value) for name, value in found.items()}
+
+
+def _only(explanation: Explanation) -> str | None:
+    """The quantity whose unit the gap has; None where several are in it."""
+    names = set(explanation.curves.quantity.tolist())
+    return str(names.pop()) if len(names) == 1 else None
 
 
 def _region(region: Region) -> dict[str, Any]:

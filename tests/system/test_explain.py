@@ -140,8 +140,21 @@ BAD: dict[str, tuple[Callable[[Rows], Rows], str]] = {
     "a few readings": (lambda rows: rows[:12], "readings cannot carry a verdict"),
     "no unit": (lambda rows: renamed(rows, pressure_MPa="pressure"), "no unit"),
     "two units": (lambda rows: [{**row, "angle_rad": "1"} for row in rows], "angle"),
-    "no angle": (lambda rows: [{**row, "angle_deg": "NaN"} for row in rows], "cells hold no number"),
-    "words": (lambda rows: [{**row, "angle_deg": "much"} for row in rows], "cells hold no number"),
+    "no angle": (lambda rows: [{**row, "angle_deg": ""} for row in rows], "loops.csv: no number in column angle_deg"),
+    "no time": (lambda rows: [{**row, "time_s": ""} for row in rows], "loops.csv: no number in column time_s"),
+    "words": (lambda rows: [{**row, "angle_deg": "much"} for row in rows], "loops.csv, line 2, column angle_deg: "),
+    "radians": (
+        lambda rows: [{**row, "angle_deg": float(row["angle_deg"]) / 57.3} for row in rows],
+        " of the simulated one, as rad for deg makes it; name the column with its unit",
+    ),
+    "megapascals called kilopascals": (
+        lambda rows: renamed(rows, pressure_MPa="pressure_kPa"),
+        "the largest pressure is 0.00035 MPa, below 0.001 MPa",
+    ),
+    "no design": (
+        lambda rows: [{k: v for k, v in row.items() if k != "design"} for row in rows if row["design"] == "middle"],
+        "add a column design, with names of those that are simulated: middle, narrow, wide; the columns are sample, run, cycle",
+    ),
 }
 
 
@@ -279,7 +292,7 @@ def test_soft_fingers_of_another_lab_are_described(real_folder: Path, benchlab: 
     ]
     gap = [angle - curves[1][p] for p, angle in curves[0].items() if p in curves[1]]  # every 68 kPa
     assert len(whole) == 1 and whole[0]["gap"] == pytest.approx(sum(gap) / len(gap), abs=1.5)
-    assert any("with the design: -2.5 on average for DS30E30_1_1" in line for line in answer["remainder"])
+    assert any("with the design: -2.5° on average for DS30E30_1_1" in line for line in answer["remainder"])
     assert any("neither a name nor a probability" in line for line in answer["warnings"])
     assert sum("measured but not simulated" in line for line in answer["warnings"]) == 1
     assert answer["next_experiment"]["setup"].startswith("two samples of each design")
@@ -312,7 +325,7 @@ def test_the_loop_of_a_braided_muscle_is_described(real_folder: Path, benchlab: 
     )
     assert widest["gap"] > 0 and widest["pressure_MPa"][1] > 0.5 and widest["p"] is None
     (line,) = (line for line in answer["remainder"] if "with the direction" in line)
-    assert "on average for loading, +" in line and line.endswith("for unloading")
+    assert "on average for loading, +" in line and " N on" in line and line.endswith("for unloading")
     assert answer["not_judged"]["camera_scale"] == "it does not show in force_N"
 
 

@@ -20,6 +20,9 @@ SIMULATED = "Simulated data: what is called measured here came from a twin or wa
 CLEARLY_SD = 10
 """Beyond this distance its number says nothing more."""
 
+NO_WIDTH = 1e-11
+"""An interval that is narrower has no digits."""
+
 UNWRITTEN = "next.yaml"
 """What a protocol is called that has no file yet."""
 
@@ -207,14 +210,16 @@ def parameter_words(name: str, estimate: Estimate) -> str:
 
 
 def parameter_text(estimate: Estimate) -> tuple[str, str]:
-    """Value and interval as written: two digits of the interval; what bounds the interval if not the data."""
+    """Value and interval as written: two digits of the interval; what bounds it if not the data. One without width says nothing."""
     low, high = estimate.low, estimate.high
-    known = math.isfinite(low) and math.isfinite(high) and high > low
+    if high - low < NO_WIDTH:
+        return digits(estimate.value).text, "not determined" + ": it stays at a bound of the effect" * estimate.at_bound
+    known = math.isfinite(low) and math.isfinite(high)
     places = decimals_of((high - low) / 2) if known else None
     value, first, last = (
         (digits(each) if places is None else number(each, places)).text for each in (estimate.value, low, high)
     )
-    if known or low == high:
+    if known:
         interval = f"{first} to {last}"
     elif math.isfinite(low) or math.isfinite(high):
         interval = f"at least {first}" if math.isfinite(low) else f"at most {last}"

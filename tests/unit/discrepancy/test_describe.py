@@ -57,7 +57,7 @@ def test_a_loop_is_found_in_its_directions_and_nothing_is_named() -> None:
         )
         assert up.gap == pytest.approx(-1, abs=0.1) and down.gap == pytest.approx(4, abs=0.1)
         assert np.isnan(up.p) and up.rate_MPa_s == pytest.approx(0.034, rel=0.02)
-    assert any("with the direction" in line and "+4 for unloading" in line for line in found.remainder)
+    assert any("with the direction" in line and "+4° for unloading" in line for line in found.remainder)
     assert any("Measure two samples of a design at least, or three runs" in line for line in found.warnings)
 
 
@@ -112,7 +112,7 @@ def test_what_is_left_depends_on_further_columns() -> None:
         timeless(NAMES[1], 6 + 0.3 * (humidity - 40), against={"humidity": humidity, "operator": "bert"}),
     ]
     lines = "\n".join(described(*runs).remainder)
-    assert re.search(r"goes with the column operator: -0\.\d+ on average for anna, \+5\.9 for bert", lines)
+    assert re.search(r"goes with the column operator: -0\.\d+° on average for anna, \+5\.9° for bert", lines)
     assert "the column humidity: " in lines and "for the lowest values" in lines and "for the highest values" in lines
 
 
@@ -124,4 +124,4 @@ def test_a_column_that_says_nothing_is_not_told() -> None:
 
 def test_an_even_gap_goes_with_nothing() -> None:
     words = described(*(timeless(name, 3.0) for name in NAMES)).remainder[1:]
-    assert words == ("100% of it is the same everywhere: +3",)
+    assert words == ("100 % of it is the same everywhere: +3°",)

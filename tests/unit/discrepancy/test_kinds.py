@@ -18,7 +18,7 @@ def run(corners_s: list[float], corners_MPa: list[float], step_s: float = 0.25) 
 def test_a_triangle_of_few_readings_has_its_true_peak_and_one_rate_for_all_its_ramps() -> None:
     kinds, _, (cut,) = kinds_of([run([0, 2, 4, 6, 8], [0, 0.36, 0, 0.36, 0])])
     assert {round(one.rate_MPa_s, 4) for one in cut} != {0.18}
-    assert kinds[0].words == "to 0.36 MPa at 0.18 MPa/s, 2 cycles"
+    assert kinds[0].words == "to 0.36 MPa at 0.18 MPa/s, loaded 2 times"
     assert {kinds[0].told_rate(one.rate_MPa_s) for one in cut} == {0.18}
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from benchlab.discrepancy.explanation import VERDICTS, Estimate, Gap, Region
-from benchlab.report.explain.words import SIMULATED, parameter_text, told, verdict_words
+from benchlab.report.explain.words import SIMULATED, parameter_text, parameter_words, told, verdict_words
 from tests.unit.report import explanations
 from tests.unit.report.explanations import NAN
 
@@ -113,6 +113,15 @@ def test_parameters_with_intervals_units_and_what_bounds_them() -> None:
 )  # fmt: skip
 def test_intervals(low: float, high: float, text: tuple[str, str]) -> None:
     assert parameter_text(Estimate(0.1, low, high, "s")) == text
+
+
+@pytest.mark.parametrize("high", [0.0, 1e-14])
+def test_an_interval_without_width_at_a_bound_says_nothing(high: float) -> None:
+    stuck = Estimate(0.0, 0.0, high, "1/min", "fall", at_bound=True)
+    assert parameter_words("fall_per_min", stuck) == (
+        "fall_per_min = 0 1/min (not determined: it stays at a bound of the effect): fall"
+    )
+    assert parameter_text(replace(stuck, at_bound=False)) == ("0", "not determined")
 
 
 def test_the_next_experiment_has_its_command_and_a_text_has_no_path() -> None:
