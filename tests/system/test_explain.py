@@ -70,6 +70,7 @@ def test_a_study_becomes_a_page_numbers_and_a_model(folder: Path, benchlab: Any)
     assert done.code == 0, done.err
     answer = done.json
     assert answer["verdict"] == "named" and [effect["name"] for effect in answer["effects"]] == ["friction"]
+    assert answer["gap_quantity"] == "angle_deg"
     assert "The simulation lacks friction" in done.err and "Simulated data" in done.err
     assert sorted(path.name for path in out.iterdir()) == [
         "explain.json",
