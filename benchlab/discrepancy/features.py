@@ -57,6 +57,10 @@ class Features:
     def quantities(self) -> tuple[str, ...]:
         return tuple(self.of_point)
 
+    def of_quantity(self, name: str) -> NDArray[np.bool_]:
+        """(F,): which features are of that quantity."""
+        return np.array([feature.quantity == name for feature in self.features])
+
     def only(self, kept: NDArray[np.bool_]) -> Features:
         """The same without the cells (C,) that are not kept; samples that have none left are gone."""
         samples, sample = np.unique(self.sample[kept], return_inverse=True)

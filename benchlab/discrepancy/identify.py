@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchlab.discrepancy.bank import DRAWS, Bank, bank_of, flexible, principal, scan
+from benchlab.discrepancy.bank import DRAWS, Bank, Scan, bank_of, flexible, principal, scan
 from benchlab.discrepancy.candidates import distinct, fits_with, in_set, p_enough, reach
 from benchlab.discrepancy.effects.effect import Effect
 from benchlab.discrepancy.fit import Fit, nothing
@@ -68,11 +68,13 @@ def identify(
     smaller: list[Fit] = []
     alike: list[Fit] = []
     while len(best.names) < rules.most:
-        if _further(problem, best, forms, bank, noise, rules) > rules.further:
+        more_is_there = _further(problem, best, forms, bank, noise, rules)
+        if more_is_there.p > rules.further:
             break
         tell(f"fits of {len(best.names) + 1} effects")
         more, more_forms = _extended(problem, _carried(tried, bare, rules), bank, rules)
-        more = [one for one in more if _worth(problem, one, best, rules)]
+        shown = [one for one in more if p_enough(problem, best, one)[1] > more_is_there.usual]
+        more = [one for one in shown if _worth(problem, one, best, rules)]
         if not more:
             break
         if alike := _lookalikes(problem, more[0], tried, bare, rules):
@@ -127,16 +129,19 @@ def _plausible(problem: Problem, one: Fit) -> bool:
     What scatter forgives explains nothing.
     """
     each = (problem.base_cells, problem.cells(one.actives))
-    before, after = (float(np.mean(gaps(problem, cells) ** 2)) for cells in each)
-    return after < before + problem.error_of_means**2
+    before, after = (_square(problem, problem.in_parts(gaps(problem, cells))) for cells in each)
+    return after < before + len(problem.features.quantities)
 
 
-def _further(problem: Problem, best: Fit, forms: Forms, bank: Bank, noise: FloatArray, rules: Rules) -> float:
-    """p of no further effect of the vocabulary, beside what the effects of the model do in their other forms."""
-    others = bank.without(best.names)
-    if not others.actives:
-        return 1.0
-    return scan(problem, others.directions, best.residual, beside(best, forms[best.key]), noise, rules.multiplier).p
+def _square(problem: Problem, values: FloatArray) -> float:
+    """Sum of squares of (quantities, PARTS), each against the error of the means."""
+    return float(((values / problem.errors_of_means[:, None]) ** 2).sum())
+
+
+def _further(problem: Problem, best: Fit, forms: Forms, bank: Bank, noise: FloatArray, rules: Rules) -> Scan:
+    """Whether the vocabulary has a further effect, beside what the effects of the model do in their other forms."""
+    others = bank.without(best.names).directions
+    return scan(problem, others, best.residual, beside(best, forms[best.key]), noise, rules.multiplier)
 
 
 @dataclass(frozen=True)
@@ -169,14 +174,29 @@ def beside(best: Fit, forms: Sequence[Fit]) -> FloatArray:
 
 
 def _worth(problem: Problem, more: Fit, best: Fit, rules: Rules) -> bool:
-    """Whether the larger model moves the predictions enough to be worth its name: by a share of the gap; a second effect also by
-    most of what the first has left of it, as long as that is more than a form may leave."""
-    before, left = (gaps(problem, cells) for cells in (problem.base_cells, problem.cells(best.actives)))
-    moved = _rms(left - gaps(problem, problem.cells(more.actives)))
-    needed = rules.moves[min(len(best.names), len(rules.moves)) - 1]
-    if moved > needed * _rms(before):
-        return True
-    return len(best.names) == 1 and moved > max(rules.moves_left * _rms(left), rules.moves_least * _rms(before))
+    """Whether the step to the larger model, and each effect that it has more, moves the predictions enough to be worth a name: in some
+    part of the gap by a share of it; a second effect also by most of what the first has left of it, as long as that is more than a form
+    may leave.
+    """
+    before, left = (
+        problem.in_parts(gaps(problem, cells)) for cells in (problem.base_cells, problem.cells(best.actives))
+    )
+    needed = rules.moves[min(len(best.names), len(rules.moves)) - 1] * before
+    if len(best.names) == 1:
+        needed = np.minimum(needed, np.maximum(rules.moves_left * left, rules.moves_least * before))
+    whole = np.sqrt((before**2).sum(axis=1, keepdims=True))
+    needed = np.maximum(needed, rules.part * whole)
+    least = rules.least * problem.errors_of_means[:, None]
+
+    def enough(step: FloatArray) -> bool:
+        moved = problem.in_parts(problem.mean_over_samples(step))
+        size = np.sqrt((moved**2).sum(axis=1, keepdims=True))
+        return bool(((moved > needed) & (size > least)).any())
+
+    cells = problem.cells(more.actives)
+    new = [i for i, name in enumerate(more.names) if name not in best.names]
+    without = [more.actives[:i] + more.actives[i + 1 :] for i in new]
+    return all(enough(cells - problem.cells(actives)) for actives in (best.actives, *without))
 
 
 def _lookalikes(problem: Problem, more: Fit, tried: Sequence[Fit], bare: Fit, rules: Rules) -> list[Fit]:
@@ -191,13 +211,13 @@ def _lookalikes(problem: Problem, more: Fit, tried: Sequence[Fit], bare: Fit, ru
 
 
 def _clears(problem: Problem, more: Fit, best: Fit, rest: Left, left: Left, rules: Rules) -> bool:
-    """Whether of what the smaller model left, against the scatter or in the units of the quantity, a share is gone."""
-    now, then = (_rms(gaps(problem, problem.cells(one.actives))) ** 2 for one in (more, best))
-    return rest.amount <= rules.clears * left.amount or now <= rules.clears * then
-
-
-def _rms(values: FloatArray) -> float:
-    return float(np.sqrt(np.mean(values**2)))
+    """Whether of what the smaller model left a share is gone: against the scatter, or in that part of the gap in which the larger one
+    differs most from it."""
+    cells = problem.cells(best.actives), problem.cells(more.actives)
+    then, now = (problem.in_parts(gaps(problem, one)) for one in cells)
+    moved = problem.in_parts(problem.mean_over_samples(cells[1] - cells[0]))
+    place = np.unravel_index(np.argmax(moved / np.maximum(then, 1e-12)), moved.shape)
+    return rest.amount <= rules.clears * left.amount or bool(now[place] ** 2 <= rules.clears * then[place] ** 2)
 
 
 def share_explained(bare: Fit, best: Fit, left: Left) -> float:

@@ -9,10 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import sparse
 from scipy.linalg import cholesky, solve_triangular
 
 from benchlab.discrepancy.effects.effect import Active
 from benchlab.discrepancy.features import Features
+from benchlab.discrepancy.parts import parts_of
 from benchlab.discrepancy.predict import predict
 from benchlab.discrepancy.scatter import Scatter
 from benchlab.discrepancy.scene import Scene
@@ -25,8 +27,10 @@ PRIOR_FREEDOM = 12.0
 THINNING = 0.0004
 """Systematic error of each feature, as a share of the largest value: runs are evaluated at a few points in each interval (chosen)."""
 
-FORM = 0.1
-"""Error of an effect's form, as a share of the gap that it is to explain (chosen): what a form leaves is no further effect."""
+FORM = (0.1, 0.2, 0.2)
+"""Error of an effect's form in each of PARTS, as a share of the gap in that part and the parts after it (chosen): what a form leaves is no
+further effect. Who has loops may be wrong in the course, but a static effect leaves no loops.
+"""
 
 
 class _Alike(NamedTuple):
@@ -55,24 +59,46 @@ class Problem:
         return len(self.features.sample_design)
 
     @cached_property
-    def systematic(self) -> FloatArray:
-        """(F,): error of the model's own numbers, the same for all samples: of thinning the runs, and of the form of what is missing."""
-        features = self.features.features
-        mean = self.mean_over_samples(self.base_cells)
-        quantity = np.array([feature.quantity for feature in features])
-        found = np.zeros(len(features))
-        for name in self.features.quantities:
-            mine = quantity == name
-            thinning = THINNING * float(np.abs(mean[mine]).max())
-            found[mine] = np.hypot(thinning, FORM * self._gap_beyond_scatter(mean, mine))
-        return found
+    def systematic(self) -> sparse.csr_array:
+        """(F, F): root of the covariance of the model's own error, the same for all samples: of thinning the runs, and of the form of what
+        is missing.
+        """
+        base = self.mean_over_samples(self.base_cells)
+        sd = np.zeros((len(FORM), len(base)))
+        for name, beyond in zip(self.features.quantities, self._gap_beyond_scatter(base)):
+            mine = self.features.of_quantity(name)
+            thinning = THINNING * float(np.abs(base[mine]).max())
+            for part, share in enumerate(FORM):
+                sd[part, mine] = np.hypot(thinning, share * np.sqrt(beyond[part:].sum()))
+        return sparse.csr_array(sum(sparse.diags_array(one) @ part for one, part in zip(sd, self._parts)))
 
-    def _gap_beyond_scatter(self, base: FloatArray, mine: NDArray[np.bool_]) -> float:
-        """RMS of the gap between the means and the base, without what scatter brings."""
+    @cached_property
+    def _parts(self) -> tuple[sparse.csr_array, ...]:
+        return parts_of(self.features)
+
+    def in_parts(self, values: FloatArray) -> FloatArray:
+        """(F,) → (quantities, PARTS): RMS over the features that samples have."""
+        return np.sqrt(self._means_of([part @ values for part in self._parts], squared=True))
+
+    def _means_of(self, parts: Sequence[FloatArray], squared: bool = False) -> FloatArray:
+        """(F,) each → (quantities, PARTS): mean over the features that samples have."""
+        known = np.bincount(self.features.feature, minlength=len(self.features.features)) > 0
+        rows = [known & self.features.of_quantity(name) for name in self.features.quantities]
+        return np.array([[np.mean(part[mine] ** 2 if squared else part[mine]) for part in parts] for mine in rows])
+
+    def _gap_beyond_scatter(self, base: FloatArray) -> FloatArray:
+        """(quantities, PARTS): mean square of the gap between the means and the base, without what scatter brings."""
         number = np.bincount(self.features.feature, minlength=len(base))
-        known = mine & (number > 0)
-        gap = (self.mean_over_samples(self.features.value) - base)[known]
-        return float(np.sqrt(max(float(np.mean(gap**2 - self.variance_of_means[known])), 0.0)))
+        gap = np.where(number > 0, self.mean_over_samples(self.features.value) - base, 0.0)
+        scatter = [np.zeros(len(base)) for _ in self._parts]
+        for where, covariance in zip(self.scatter.features_of, self.scatter.covariance):
+            n = number[where]
+            of_means = np.where(np.outer(n, n) > 0, covariance / np.sqrt(np.maximum(np.outer(n, n), 1)), 0.0)
+            for part, brought in zip(self._parts, scatter):
+                own = part[where][:, where].toarray()
+                brought[where] = np.einsum("ij,jk,ik->i", own, of_means, own)
+        squares = self._means_of([part @ gap for part in self._parts], squared=True)
+        return np.maximum(squares - self._means_of(scatter), 0.0)
 
     def mean_over_samples(self, cells: FloatArray) -> FloatArray:
         """(C,) → (F,): 0 for a feature that no sample has."""
@@ -89,6 +115,12 @@ class Problem:
         return variance
 
     @property
+    def errors_of_means(self) -> FloatArray:
+        """(quantities,): RMS standard error of the features' means over samples, each in the unit of its quantity."""
+        rows = [self.features.of_quantity(name) for name in self.features.quantities]
+        return np.array([np.sqrt(np.mean(self.variance_of_means[mine])) for mine in rows])
+
+    @property
     def error_of_means(self) -> float:
         """RMS standard error of the features' means over samples, in the unit of the quantity."""
         return float(np.sqrt(np.mean(self.variance_of_means)))
@@ -101,13 +133,14 @@ class Problem:
             mine = np.flatnonzero(self.features.sample == sample)
             groups.setdefault((int(design), self.features.feature[mine].tobytes()), []).append(mine)
         number = np.bincount(self.features.feature, minlength=len(self.features.features))
-        out = []
+        out, systematic = [], self.systematic
         for (design, _), cells in groups.items():
             own = self.features.feature[cells[0]]
             place = np.searchsorted(self.scatter.features_of[design], own)
             between = self.scatter.covariance[design][np.ix_(place, place)]
-            error = self.systematic[own]
-            lower = cholesky(between + np.diag(number[own] * error**2), lower=True)
+            error = systematic[own]
+            counts = np.sqrt(np.outer(number[own], number[own]))
+            lower = cholesky(between + counts * (error @ error.T).toarray(), lower=True)
             scatter = solve_triangular(lower, cholesky(between, lower=True), lower=True)
             out.append(_Alike(np.array(cells), lower, scatter, own))
         return out
@@ -203,7 +236,7 @@ class Problem:
         """
         unknown = np.sqrt(self.freedom / generator.chisquare(self.freedom, draws))[:, None]
         out = np.empty((draws, len(self.features.value)))
-        common = generator.standard_normal((draws, len(self.features.features))) * self.systematic
+        common = generator.standard_normal((draws, len(self.features.features))) @ self.systematic.T
         for alike in self._factors:
             for cells in alike.cells:
                 own = unknown * (generator.standard_normal((draws, len(cells))) @ alike.scatter.T)
@@ -236,7 +269,7 @@ class Problem:
         )
         together = np.zeros((len(self.features.features), directions.shape[1]))
         np.add.at(together, self.features.feature, weights)
-        return self.systematic[:, None] * together
+        return np.asarray(self.systematic.T @ together)
 
     def _t(self, scores: FloatArray, errors: tuple[FloatArray, FloatArray]) -> FloatArray:
         """t of the scores (S, K) → (K,): their sum over its standard error, 0 where that is none. errors: of _errors."""

@@ -15,8 +15,9 @@ class Rules:
     adequate: smallest p of the flexible test at which nothing is left.
     doubtful, half: with a p of that test below the first, a model that explains less than the second share is no explanation.
     share: explained share from which one, two, three effects are named although something is left.
-    moves: smallest RMS by which a second, a third effect must move the predictions, as a share of the gap's. moves_left, moves_least: a
-    second effect also as a share of that of the gap that is left, and then of the gap's.
+    moves: smallest RMS by which a second, a third effect must move the predictions in some part of the gap (parts.PARTS), as a share of it.
+    moves_left, moves_least: a second effect also as a share of that of the part that is left, and then of the part.
+    part, least: and at least by this share of the whole gap, and of the error of the means.
     alone, together: of one kind of run, a further effect that alone explains this share of what the best does, where both together
     explain no more than the second share beyond it, is a rival.
     clears: where something is left beside a larger model, it must have fallen to this share of what was left before.
@@ -25,7 +26,7 @@ class Rules:
     """
 
     first: float = 0.05
-    further: float = 0.01
+    further: float = 0.05
     multiplier: float = 1.12
     rival: float = 0.001
     close: float = 2.0
@@ -37,6 +38,8 @@ class Rules:
     moves: tuple[float, ...] = (0.25, 0.4)
     moves_left: float = 0.6
     moves_least: float = 0.1
+    part: float = 0.05
+    least: float = 0.5
     alone: float = 0.7
     together: float = 0.15
     clears: float = 0.5

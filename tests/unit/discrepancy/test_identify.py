@@ -47,3 +47,12 @@ def test_a_second_effect_may_be_small_beside_the_first_where_it_is_most_of_what_
     moved = made.mean_over_samples(made.cells(found.best.actives) - made.cells(first))
     gap = made.mean_over_samples(made.cells(found.best.actives) - made.base_cells)
     assert np.sqrt(np.mean(moved**2) / np.mean(gap**2)) < 0.2
+
+
+def test_a_loop_that_is_small_beside_a_large_course_is_found() -> None:
+    hidden = [active("camera_scale", factor=1.3), active("friction", half_width_deg=2.5)]
+    made = problem(9, hidden, designs=4, samples=5)
+    gap = made.in_parts(made.mean_over_samples(made.features.value - made.base_cells))[0]
+    assert gap[2] < 0.1 * np.hypot(gap[0], gap[1])  # of the whole gap, the loops are little
+    found = identify(made, few("camera_scale", "friction", "viscoelasticity", "softening"), np.random.default_rng(1))
+    assert ("camera_scale", "friction") in {tuple(sorted(one.names)) for one in found.rivals}

@@ -2,8 +2,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy import stats
+from scipy import sparse, stats
 
+from benchlab.discrepancy.parts import parts_of
 from benchlab.discrepancy.problem import Problem, off
 from tests.unit.discrepancy.drawn import active, problem
 
@@ -14,7 +15,10 @@ def test_whitening_makes_the_covariance_of_a_sample_one() -> None:
     own = made.features.feature[mine]
     place = np.searchsorted(made.scatter.features_of[0], own)
     number = np.bincount(made.features.feature)[own]
-    covariance = made.scatter.covariance[0][np.ix_(place, place)] + np.diag(number * made.systematic[own] ** 2)
+    error = made.systematic.toarray()[own]
+    covariance = made.scatter.covariance[0][np.ix_(place, place)] + np.sqrt(np.outer(number, number)) * (
+        error @ error.T
+    )
     cells = np.zeros((len(made.features.value), len(mine)))
     cells[mine] = covariance
     half = made.whiten(cells)[mine]
@@ -51,7 +55,7 @@ def test_means_over_samples_and_their_error_are_the_direct_ones() -> None:
 
 def test_drawn_scatter_is_larger_or_smaller_as_its_estimate_is_uncertain() -> None:
     made = problem(1, designs=2, protocol=("slow",))
-    made.__dict__["systematic"] = np.zeros(len(made.features.features))
+    made.__dict__["systematic"] = sparse.csr_array((len(made.features.features),) * 2)
     noise = made.noise(np.random.default_rng(5), 2000)
     size = np.mean(noise**2, axis=1)  # of C independent cells: f/χ²_f, but for their own 2/C
     cells = noise.shape[1]
@@ -69,8 +73,8 @@ def dense(made: Problem, scatter: float = 1.0) -> np.ndarray:
         mine = np.flatnonzero(features.sample == sample)
         place = np.searchsorted(made.scatter.features_of[design], features.feature[mine])
         covariance[np.ix_(mine, mine)] = scatter * made.scatter.covariance[design][np.ix_(place, place)]
-    same = features.feature[:, None] == features.feature[None, :]
-    covariance += same * made.systematic[features.feature] ** 2
+    error = made.systematic.toarray()[features.feature]
+    covariance += error @ error.T
     whiten = made.whiten(np.eye(len(features.value)))
     return np.asarray(whiten @ covariance @ whiten.T)
 
@@ -99,6 +103,22 @@ def test_drawn_noise_has_the_scatter_and_the_systematic_error_that_all_samples_s
 def test_the_systematic_error_is_a_tenth_of_a_gap_and_next_to_none_without() -> None:
     made = problem(3, [active("camera_scale", factor=1.3)], designs=2, protocol=("slow",))
     base_deg = made.mean_over_samples(made.cells(()))
-    assert made.systematic == pytest.approx(0.1 * (1 - 1 / 1.3) * np.sqrt(np.mean(base_deg**2)), rel=0.02)
+    course, _, loops = parts_of(made.features)
+    sd = made.systematic.toarray() @ np.ones(len(base_deg))  # alike in all features: no loop
+    assert sd == pytest.approx(0.1 * (1 - 1 / 1.3) * np.sqrt(np.mean(base_deg**2)), rel=0.03)
+    assert (
+        np.abs(made.systematic @ loops).max() < 0.1 * np.abs(made.systematic @ course).max()
+    )  # what has no loop may not be wrong in one
     alike = replace(made, features=replace(made.features, value=made.cells(())))
-    assert alike.systematic == pytest.approx(4e-4 * base_deg.max(), rel=1e-6)
+    assert alike.systematic.toarray() == pytest.approx(
+        4e-4 * base_deg.max() * np.eye(len(base_deg)), rel=1e-6, abs=1e-9
+    )
+
+
+def test_the_error_of_loops_is_a_fifth_of_them() -> None:
+    made = problem(3, [active("friction", width_share=0.3)], designs=2, protocol=("slow",))
+    gap = made.mean_over_samples(made.features.value) - made.mean_over_samples(made.base_cells)
+    loops = parts_of(made.features)[2]
+    scale = 0.2 * np.sqrt(np.mean((loops @ gap) ** 2))
+    unit = loops @ np.random.default_rng(1).standard_normal(len(gap))
+    assert made.systematic @ unit == pytest.approx(scale * unit, rel=0.05)

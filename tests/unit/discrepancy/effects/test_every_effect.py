@@ -76,7 +76,7 @@ def test_the_catalogue_is_the_vocabulary_in_its_order() -> None:
 
 def test_each_stands_in_a_file_of_its_name() -> None:
     folder = Path(module.__file__).parent
-    files = {path.stem for path in folder.glob("*.py")} - {"__init__", "effect", "catalogue"}
+    files = {path.stem for path in folder.glob("*.py")} - {"__init__", "effect", "catalogue", "foreign"}
     assert files == set(VOCABULARY)
     for effect in EVERY:
         assert type(effect).__module__.rsplit(".", 1)[1] == effect.name
