@@ -97,11 +97,13 @@ def _no_better(found: Identified, parts: Sequence[HeldOut], summary: bool) -> st
     """Why what fits best is not named: it does not predict what the fit has not seen. Empty where it does, or that is not known."""
     if found.verdict not in ("named", "ambiguous"):
         return ""
-    kind = "design" if summary else "sample"
-    before, after = (together(parts, kind, operator.attrgetter(name)) for name in ("before", "after"))
     names = " and ".join(found.best.names)
-    what = f"{names} fits best and is not named: held-out {kind}s are predicted no better with it ({before:.3g} → {after:.3g})"
-    return what if after >= before else ""
+    for kind in ("design",) if summary else ("sample", "design"):
+        before, after = (together(parts, kind, operator.attrgetter(name)) for name in ("before", "after"))
+        if after >= before:
+            told = f"held-out {kind}s are predicted no better with it ({before:.3g} → {after:.3g})"
+            return f"{names} fits best and is not named: {told}"
+    return ""
 
 
 def _cannot_show(effect: Effect, problem: Problem) -> str:

@@ -63,7 +63,7 @@ CASES = [
     (case(1, "null"), "agree"),
     (case(2, "null"), "agree"),
     (case(5, "single", ("viscoelasticity",)), "unique"),
-    (case(7, "single", ("dead_pressure",)), "unique"),
+    (case(7, "single", ("dead_pressure",), forms=(("dead_pressure", "form", "kink"),)), "unique"),
     (case(23, "single", ("regulator_lag",), layout={"command": True}), "unique"),
     (case(12, "unknown", ("resonance",)), "unexplained"),
     (case(11, "pair", ("camera_scale",), layout={"runs": ("slow", "fast")}, **PAIR), "in set"),

@@ -47,7 +47,8 @@ def test_the_play_that_was_drawn_is_found(answer: dict[str, Any]) -> None:
     (effect,) = answer["effects"]
     width = effect["parameters"]["half_width_deg"]
     assert effect["name"] == "friction"
-    assert width["low"] < PLAY_DEG_PER_MPa * 0.35 < width["high"] and width["high"] - width["low"] < 0.6
+    assert width["low"] < PLAY_DEG_PER_MPa * 0.35 < width["high"]
+    assert width["high"] - width["low"] < 0.2 * width["value"]  # a fifth: what the form of a loop may be off
     gap = answer["gap"]
     assert gap["heldout_after"] < 1.15 * gap["noise_floor"] < 0.6 * gap["heldout_before"]
 
