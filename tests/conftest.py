@@ -7,6 +7,7 @@ import os
 # Two test processes share the cores: threads of BLAS on top of them would wait by spinning.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+import signal
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from pathlib import Path
@@ -16,6 +17,10 @@ import av
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
+
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+    # As a shell starts what runs in the background; processes of the tests would not hear a Ctrl-C either.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # How long an example takes is the computer's affair, and how busy it is.
 settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])

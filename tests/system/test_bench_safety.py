@@ -171,7 +171,7 @@ def test_a_vent_that_nobody_confirms_is_told_loudly(
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL, signal.SIGSTOP])
 def test_every_signal_ends_vented(nano: SmallNano, files, tmp_path: Path, number: signal.Signals) -> None:
-    files[1].write_text(PROTOCOL.replace("0.5", "30"))
+    files[1].write_text(PROTOCOL.replace("0.5", "1200"))
     running = subprocess.Popen([*PATIENT, *words(nano, *files)], stderr=subprocess.DEVNULL)
     try:
         wait_until(lambda: nano.pressure_MPa >= 0.99 * HELD_MPA, lambda: running.poll() is None)
@@ -190,7 +190,7 @@ def test_every_signal_ends_vented(nano: SmallNano, files, tmp_path: Path, number
 
 
 def test_a_closed_terminal_ends_vented(nano: SmallNano, files, tmp_path: Path) -> None:
-    files[1].write_text(PROTOCOL.replace("0.5", "30"))
+    files[1].write_text(PROTOCOL.replace("0.5", "1200"))
     pid, terminal = pty.fork()
     if pid == 0:
         os.execv(sys.executable, [*PATIENT, *words(nano, *files)])

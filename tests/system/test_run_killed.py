@@ -23,7 +23,7 @@ title: Long
 limit_MPa: 0.35
 segments:
   - ramp: {to_MPa: 0.2, duration_s: 0.5}
-  - hold: {duration_s: 60}
+  - hold: {duration_s: 1200}  # no test waits for its end, however slow the computer
 """
 
 Process = subprocess.Popen[str]
@@ -174,7 +174,7 @@ def test_two_runs_of_one_name_are_not_mixed(runs: Runs) -> None:
 
 
 def test_a_reader_that_has_gone_does_not_stop_the_run(runs: Runs) -> None:
-    runs.protocol.write_text(PROTOCOL.replace("60", "0.5"))
+    runs.protocol.write_text(PROTOCOL.replace("1200", "0.5"))
     process = runs.start()
     assert process.stdout is not None and process.stderr is not None
     process.stdout.close()
