@@ -21,7 +21,7 @@ from benchlab.discrepancy.locate import gap_p, gaps, regions
 from benchlab.discrepancy.measured import Measured, Summary
 from benchlab.discrepancy.prepare import prepared
 from benchlab.discrepancy.problem import Problem
-from benchlab.discrepancy.remainder import remainder_words
+from benchlab.discrepancy.remainder import remainder_words, unit_of
 from benchlab.discrepancy.rules import Rules
 from benchlab.units import FloatArray
 
@@ -62,7 +62,7 @@ def explain(
     p = gap_p(problem, bare, generator) if tested else np.full(len(gap), np.nan)
     tell("held-out samples, designs and rates")
     parts = _held_out(problem, found, summary) if tested else ()
-    if note := _no_better(found, parts, summary):
+    if note := _no_better(problem, found, parts, summary):
         nobody = Identified("unexplained", nothing(problem), (), (), (), found.p_gap, found.p_left, 0.0)
         found, parts, warnings = nobody, _held_out(problem, nobody, summary), (*warnings, note)
     after = gaps(problem, problem.cells(found.best.actives))
@@ -93,7 +93,7 @@ def _held_out(problem: Problem, found: Identified, summary: bool) -> tuple[HeldO
     return tuple(part for part in held_out(problem, found.best) if part.kind == "design" or not summary)
 
 
-def _no_better(found: Identified, parts: Sequence[HeldOut], summary: bool) -> str:
+def _no_better(problem: Problem, found: Identified, parts: Sequence[HeldOut], summary: bool) -> str:
     """Why what fits best is not named: it does not predict what the fit has not seen. Empty where it does, or that is not known."""
     if found.verdict not in ("named", "ambiguous"):
         return ""
@@ -101,7 +101,7 @@ def _no_better(found: Identified, parts: Sequence[HeldOut], summary: bool) -> st
     for kind in ("design",) if summary else ("sample", "design"):
         before, after = (together(parts, kind, operator.attrgetter(name)) for name in ("before", "after"))
         if after >= before:
-            told = f"held-out {kind}s are predicted no better with it ({before:.3g} → {after:.3g})"
+            told = f"held-out {kind}s are predicted no better with it ({before:.3g} → {after:.3g}{unit_of(problem)})"
             return f"{names} fits best and is not named: {told}"
     return ""
 

@@ -36,9 +36,9 @@ def remainder_words(problem: Problem, found: Identified, left: FloatArray) -> tu
         for name, share in sorted(shares.items(), key=lambda item: -item[1])
         if share > STANDS_OUT
     ]
-    everywhere = _everywhere(left, _unit(problem)) if len(problem.features.quantities) == 1 else []
+    everywhere = _everywhere(left, unit_of(problem)) if len(problem.features.quantities) == 1 else []
     known = np.isfinite(found.p_left)
-    size = f"{rms:.2g}{_unit(problem)} RMS"
+    size = f"{rms:.2g}{unit_of(problem)} RMS"
     more = f"{size} is left, more than scatter (p = {found.p_left:.2g})"
     return (
         more if known else f"{size} is the gap; how much of it is scatter is not known",
@@ -46,7 +46,7 @@ def remainder_words(problem: Problem, found: Identified, left: FloatArray) -> tu
     )
 
 
-def _unit(problem: Problem) -> str:
+def unit_of(problem: Problem) -> str:
     """Of a number of the remainder; none where several quantities are in it."""
     quantities = problem.features.quantities
     unit = QUANTITIES.get(quantities[0], "") if len(quantities) == 1 else ""
@@ -104,7 +104,7 @@ def _between(values: FloatArray, labels: np.ndarray) -> float:
 def _extremes(problem: Problem, name: str, labels: np.ndarray, left: FloatArray) -> str:
     means = {value: float(np.mean(left[labels == value])) for value in np.unique(labels)}
     low, high = min(means, key=lambda v: means[v]), max(means, key=lambda v: means[v])
-    first, last = (f"{means[value]:+.2g}{_unit(problem)}" for value in (low, high))
+    first, last = (f"{means[value]:+.2g}{unit_of(problem)}" for value in (low, high))
     return f"{first} on average for {_word(problem, name, low)}, {last} for {_word(problem, name, high)}"
 
 
