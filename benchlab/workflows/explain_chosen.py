@@ -8,7 +8,7 @@ from pathlib import Path
 
 from benchlab.actuator import ShellDesign
 from benchlab.discrepancy.base import Base, DesignBase
-from benchlab.errors import InputError, UsageError, printable
+from benchlab.errors import BenchlabError, InputError, UsageError, printable
 from benchlab.io.delimited import open_table
 from benchlab.io.designs_table import designs_beside, designs_of_names, read_designs
 from benchlab.io.layup_file import read_layup
@@ -151,7 +151,8 @@ def _simulated(
     progress: Progress | None,
 ) -> Base:
     if not shapes:
-        _check_designed(wanted, "that --designs has, or columns tw_mm and slw_mm")
+        which = "that --designs has, or columns tw_mm and slw_mm, or give simulated curves with --simulation"
+        _check_designed(wanted, which, UsageError)
         listed = _some(wanted.names)
         what = f"no dimensions are known of {listed}" if listed else "no design is given"
         hint = "give --designs with columns design, tw_mm, slw_mm, or simulated curves with --simulation"
@@ -170,15 +171,15 @@ def _simulated(
     return replace(base, missing={**base.missing, **unknown})
 
 
-def _check_designed(wanted: Wanted, which: str) -> None:
-    """Raises InputError where a table does not say of which design its rows are. which: designs may be named."""
+def _check_designed(wanted: Wanted, which: str, fault: type[BenchlabError] = InputError) -> None:
+    """Raises `fault` where a table does not say of which design its rows are. which: designs may be named."""
     if list(wanted.names) != [UNNAMED["design"]] or not wanted.tables:
         return
     with open_table(wanted.tables[0]) as table:
         there = ", ".join(map(printable, table.header))
     what = f"no column design: its rows are taken as of one that is called {UNNAMED['design']!r}, and none is simulated as that"
     hint = f"add a column design, with names {which}; the columns are {there}"
-    raise InputError(what, file=table.path, hint=hint)
+    raise fault(what, file=table.path, hint=hint)
 
 
 def _some(names: Sequence[str]) -> str:
