@@ -81,10 +81,11 @@ class Problem:
         return np.sqrt(self._means_of([part @ values for part in self._parts], squared=True))
 
     def _means_of(self, parts: Sequence[FloatArray], squared: bool = False) -> FloatArray:
-        """(F,) each → (quantities, PARTS): mean over the features that samples have."""
+        """(F,) each → (quantities, PARTS): mean over the features that samples have; 0 where they have none of a quantity."""
         known = np.bincount(self.features.feature, minlength=len(self.features.features)) > 0
         rows = [known & self.features.of_quantity(name) for name in self.features.quantities]
-        return np.array([[np.mean(part[mine] ** 2 if squared else part[mine]) for part in parts] for mine in rows])
+        sums = [[np.sum(part[mine] ** 2 if squared else part[mine]) for part in parts] for mine in rows]
+        return np.array(sums) / np.maximum([[mine.sum()] for mine in rows], 1)
 
     def _gap_beyond_scatter(self, base: FloatArray) -> FloatArray:
         """(quantities, PARTS): mean square of the gap between the means and the base, without what scatter brings."""

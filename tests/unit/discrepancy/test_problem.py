@@ -122,3 +122,9 @@ def test_the_error_of_loops_is_a_fifth_of_them() -> None:
     scale = 0.2 * np.sqrt(np.mean((loops @ gap) ** 2))
     unit = loops @ np.random.default_rng(1).standard_normal(len(gap))
     assert made.systematic @ unit == pytest.approx(scale * unit, rel=0.05)
+
+
+def test_a_quantity_that_is_left_out_has_no_gap() -> None:
+    made = problem(3, [active("camera_scale", factor=1.3)], designs=2, protocol=("slow",))
+    none = replace(made, features=made.features.only(np.zeros(len(made.features.value), dtype=bool)))
+    assert none.in_parts(np.ones(len(made.features.features))) == pytest.approx(np.zeros((1, 3)))
