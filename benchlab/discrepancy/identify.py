@@ -178,9 +178,8 @@ def _worth(problem: Problem, more: Fit, best: Fit, rules: Rules) -> bool:
     part of the gap by a share of it; a second effect also by most of what the first has left of it, as long as that is more than a form
     may leave.
     """
-    before, left = (
-        problem.in_parts(gaps(problem, cells)) for cells in (problem.base_cells, problem.cells(best.actives))
-    )
+    smaller, larger = problem.cells(best.actives), problem.cells(more.actives)
+    before, left = (problem.in_parts(gaps(problem, cells)) for cells in (problem.base_cells, smaller))
     needed = rules.moves[min(len(best.names), len(rules.moves)) - 1] * before
     if len(best.names) == 1:
         needed = np.minimum(needed, np.maximum(rules.moves_left * left, rules.moves_least * before))
@@ -193,10 +192,9 @@ def _worth(problem: Problem, more: Fit, best: Fit, rules: Rules) -> bool:
         size = np.sqrt((moved**2).sum(axis=1, keepdims=True))
         return bool(((moved > needed) & (size > least)).any())
 
-    cells = problem.cells(more.actives)
     new = [i for i, name in enumerate(more.names) if name not in best.names]
-    without = [more.actives[:i] + more.actives[i + 1 :] for i in new]
-    return all(enough(cells - problem.cells(actives)) for actives in (best.actives, *without))
+    without = (problem.cells(more.actives[:i] + more.actives[i + 1 :]) for i in new)
+    return enough(larger - smaller) and all(enough(larger - cells) for cells in without)
 
 
 def _lookalikes(problem: Problem, more: Fit, tried: Sequence[Fit], bare: Fit, rules: Rules) -> list[Fit]:

@@ -38,13 +38,13 @@ def check_one_run(rows: Rows, name: tuple[str, str, str]) -> None:
     if behind.sum() >= FEWEST and behind.mean() > MOST_BEHIND and (rows.unsaid or in_order):
         at = int(filed[back[0] + 1])
         what = f"goes back from {time[filed[back[0]]]:g} s to {time[at]:g} s, {counted(len(back), 'time')} in all"
-        raise _refused(rows, name, f"time of {_run(name)} {what}", at)
+        raise _refused(rows, name, f"time of {run_words(name)} {what}", at)
     if not rows.unsaid or not LEAST_MPa < _swept(rows.frame[rows.x].to_numpy()) < np.inf:
         return
     for key in [rows.x, *values_in(rows.frame)]:
         turns = _to_and_fro(rows.frame[key].to_numpy())
         if len(turns) >= FEWEST and len(turns) > MOST_BEHIND * len(time):
-            what = f"{key} of {_run(name)} goes to and fro from row to row in the order of time, {counted(len(turns), 'time')} in all"
+            what = f"{key} of {run_words(name)} goes to and fro from row to row in the order of time, {counted(len(turns), 'time')} in all"
             raise _refused(rows, name, what, int(turns[0]))
 
 
@@ -62,7 +62,8 @@ def _swept(values: FloatArray) -> float:
     return width if width > SWEPT * float(np.max(abs(known), initial=0.0)) else np.inf
 
 
-def _run(name: tuple[str, str, str]) -> str:
+def run_words(name: tuple[str, str, str]) -> str:
+    """name: design, sample and run."""
     return printable(f"run {name[2]} of {name[0]} {name[1]}")
 
 

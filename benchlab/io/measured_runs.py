@@ -16,7 +16,7 @@ from benchlab.discrepancy.measured import Measured, Run
 from benchlab.errors import InputError, counted, printable
 from benchlab.io.measured_doubts import copies, unit_jumps
 from benchlab.io.measured_frame import NAMES, Rows, values_in, without_gaps
-from benchlab.io.measured_order import check_one_run, remedy
+from benchlab.io.measured_order import check_one_run, remedy, run_words
 from benchlab.units import FloatArray
 
 if TYPE_CHECKING:
@@ -209,7 +209,7 @@ def _each_time_once(rows: Rows, name: tuple[str, str, str], repeats: _Repeats) -
         return rows
     measured = [key for key in frame if key not in NAMES]
     single = frame.drop_duplicates(subset=measured)
-    of = f"run {printable(name[2])} of {printable(name[0])} {printable(name[1])}"
+    of = run_words(name)
     if len(single) < len(frame):
         repeats.equal[of] = len(frame) - len(single)
     time = single["time_s"].to_numpy()

@@ -20,7 +20,7 @@ def check_units(measured: Measured | Summary, base: Base, largest_MPa: float) ->
     if 0 < largest_MPa < LEAST_MPa:
         what = f"the largest pressure is {largest_MPa:.2g} MPa, below {LEAST_MPa:g} MPa"
         raise InputError(what, file=measured.source, hint="is the unit in the name of the column right?")
-    for quantity in list(FACTORS)[1:]:
+    for quantity in [name for name in FACTORS if name != "pressure_MPa"]:
         ratios = [value / simulated for value, simulated in _largest(measured, base, quantity) if simulated > 0]
         ratio = float(np.median(ratios)) if ratios else 1.0
         for factor, unit in FACTORS[quantity].items():
